@@ -197,7 +197,7 @@ def _whole_path(scene: SceneContent, key: str) -> Path:
 
 
 def _exclude(one: Path, other: Path) -> bool:
-    """Return whether two values exclude each other: they are in the same table, under keys such as mass and density."""
+    """Return whether the values at two paths exclude each other, as mass and density of one shape do."""
     depth = 2 if one[0] == "torque" else 1
     if one[:depth] != other[:depth] or min(len(one), len(other)) <= depth:
         return False

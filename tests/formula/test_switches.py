@@ -137,12 +137,12 @@ def test_a_relay_slides_along_its_line(method):
     """Under -sign(angle + omega), omega = -angle on the line, so both decay as exp(-t) while |omega| < 1/C."""
     motion = symrot.propagator(scene("-sign(2*atan2(q3, q0) + omega_3)", (0, 0, 1)), method, 1e-10)
     times = np.linspace(0, 10, 21)
-    omega = motion(times).omega[:, 2]
-    slides = motion(times).stats.switching_times[-1]
+    moved = motion(times)
+    omega, slides = moved.omega[:, 2], moved.stats.switching_times[-1]
     later = times > slides
     at = motion([slides]).omega[0, 2]
     assert abs(omega[later] - at * np.exp(slides - times[later])).max() < 1e-8
-    angle = 2 * np.arctan2(motion(times).quaternion[:, 3], motion(times).quaternion[:, 0])
+    angle = 2 * np.arctan2(moved.quaternion[:, 3], moved.quaternion[:, 0])
     assert abs(angle + omega)[later].max() < 1e-8
 
 

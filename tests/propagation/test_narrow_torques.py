@@ -134,13 +134,15 @@ def test_where_the_rounding_of_a_phase_exceeds_the_tolerance_a_warning_says_so(m
     (beyond,) = moved.stats.rounded_beyond
     assert (abs(moved.t[off]) > abs(beyond)).all()
     assert f"beyond t = {beyond!r} s the rounding of the torque, a formula of the time" in moved.warnings[-1]
+    if follow == "switched" and method != "taylor":
+        return  # what follows is tested with SciPy's steps alone, and with switches in Taylor steps
     if not more:
         assert propagator(moved.t, events=["omega_3 - 9"]).warnings == moved.warnings
     assert symrot.propagator(made, method, 1e-13, **more)(moved.t).warnings == ()
 
 
 def test_the_samples_before_a_stop_carry_the_warning_too():
-    with pytest.raises(PropagationError, match="when the formula is rounded") as stopped:
+    with pytest.raises(PropagationError, match="rounding errors in a formula of the time") as stopped:
         symrot.propagator(scene("sin(t**2)", stop=60, moments=(1, 1, 1)), "taylor", 1e-15)(np.linspace(0, 60, 61))
     assert stopped.value.trajectory.warnings[-1].startswith("beyond t = ")
 
@@ -149,9 +151,12 @@ def test_the_samples_before_a_stop_carry_the_warning_too():
 def test_rounding_of_a_phase_refuses_no_smooth_torque(torque):
     """The motion from rest is followed at the least tolerance, although its first rates are near zero."""
     made = scene(torque, stop=20.0, moments=(1, 1, 1))
+    code = compile(torque, "torque", "eval")
     with mpmath.workdps(25):
         names = {"log": mpmath.log, "cos": mpmath.cos, "tanh": mpmath.tanh, "sin": mpmath.sin}
-        impulse = float(mpmath.quad(lambda t: eval(torque, names, {"t": t}), mpmath.linspace(0, 20, 161)))
+        impulse = float(
+            mpmath.quad(lambda t: eval(code, names, {"t": t}), mpmath.linspace(0, 20, 81), method="gauss-legendre")
+        )
     assert symrot.propagate(made.with_(tolerance=1e-15)).omega[-1, 2] == pytest.approx(impulse, rel=1e-14)
 
 
@@ -233,7 +238,11 @@ SCIPY = ("scipy:DOP853", "scipy:RK45", "scipy:Radau", "scipy:BDF", "scipy:LSODA"
 @pytest.mark.parametrize(
     ("method", "follow", "switch"),
     [
-        *((method, alone, switch) for method in ("taylor", "dop853", *SCIPY) for switch in ("", " + step(t - 1/4)/10")),
+        *(
+            pytest.param(method, alone, switch, marks=[pytest.mark.campaign] * (method == "scipy:Radau"))
+            for method in ("taylor", "dop853", *SCIPY)
+            for switch in ("", " + step(t - 1/4)/10")
+        ),
         *((method, in_an_ensemble, "") for method in ("taylor", "dop853", "scipy:DOP853", "scipy:RK45", "scipy:LSODA")),
         *(
             pytest.param(method, in_an_ensemble, "", marks=pytest.mark.campaign)
@@ -270,6 +279,12 @@ def test_a_periodic_pulse_is_seen_every_time(method):
     assert np.abs(omega - true / 3).max() < ALLOWED * 1e-12 * true.max() / 3 + 4 * 2**-52 * k
 
 
+@pytest.fixture(scope="module")
+def truths():
+    """Return a dictionary for the references of this module, which both methods are compared with."""
+    return {}
+
+
 @pytest.mark.thinned(6)
 @pytest.mark.parametrize("method", ["taylor", "dop853"])
 @pytest.mark.parametrize("omega", [(0.01, 0.02, 0.03), (0.1, 0, 0.2)], ids=str)
@@ -282,11 +297,11 @@ def test_a_periodic_pulse_is_seen_every_time(method):
         ("m*exp(k*(cos(t)-1))", {"m": 0.01, "k": 200.0}, [(0.0, 0.1)], 40.0),
     ],
 )
-def test_a_tumbling_body_meets_every_pulse(method, omega, torque, parameters, features, stop):
+def test_a_tumbling_body_meets_every_pulse(truths, method, omega, torque, parameters, features, stop):
     period = 2 * pi if "cos" in torque else 0.0
     told = [Feature(c, w, period=period) for c, w in features]
     problem = Problem((1, 2, 3), omega, (1, 0, 0, 0), 0.0, 0.0, stop, ("0", "0", torque), parameters, told, speed=1.0)
-    truth = reference(problem)
+    truth = truths.get((torque, omega)) or truths.setdefault((torque, omega), reference(problem))
     trajectory = symrot.propagator(scene(torque, parameters, omega, stop), method, 1e-10)([0.0, stop / 2, stop])
     times = np.random.default_rng(3).uniform(0, stop, 50)
     true, states = truth.motion(times), trajectory.sol(times).T
@@ -334,7 +349,10 @@ def test_an_ensemble_meets_the_pulse(method):
 @pytest.mark.shipped_flags  # compiled quickly, it computes for a minute
 @pytest.mark.thinned(8)
 @pytest.mark.parametrize("method", ("taylor", "dop853"))
-@pytest.mark.parametrize("torque", ["exp(t**3)", "exp(exp(t))", "cosh(100*t)", "1/(t-1/3)**3"])
+@pytest.mark.parametrize(
+    "torque",
+    ["exp(t**3)", pytest.param("exp(exp(t))", marks=pytest.mark.campaign), "cosh(100*t)", "1/(t-1/3)**3"],
+)
 def test_overflow_and_poles_end_in_a_sentence(torque, method):
     """Every method says how far it came, within the default limit of steps."""
     with pytest.raises(PropagationError, match=r"beyond t = [0-9.]+ s on the way to 20\.0 s"):
@@ -418,8 +436,8 @@ def test_samples_before_a_torque_loses_its_value_are_kept(method):
 
 @pytest.mark.parametrize("method", ["auto", "dop853", "scipy:DOP853"])
 def test_a_jump_in_the_last_bits_of_the_end_ends_the_motion(method):
-    """mod(1e5 t, 1) jumps at 2 ms, and the double next to 2 ms is a little larger."""
-    trajectory = symrot.propagator(scene("3*mod(1e5*t, 1)", stop=0.002), method, 1e-9)([0.0, 0.002])
+    """mod(1e4 t, 1) jumps at 2 ms, and the double next to 2 ms is a little larger."""
+    trajectory = symrot.propagator(scene("3*mod(1e4*t, 1)", stop=0.002), method, 1e-9)([0.0, 0.002])
     assert abs(trajectory.omega[-1][2] - 0.001) < ALLOWED * 1e-9
 
 

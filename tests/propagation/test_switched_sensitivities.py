@@ -85,8 +85,8 @@ def test_derivatives_of_a_body_that_friction_holds_at_rest_from_the_start():
     ("torque", "parameters", "names", "message"),
     [
         ("sign((t - 1)**2 - p)", {"p": 0}, ["p"], "touches zero"),
-        ("where(t > a, 1, 0)*where(t > b, 1, 2)", {"a": 1, "b": 1}, ["a"], "a < t and b < t switch at once"),
-        ("-sign(omega_3 - a) - sign(omega_3 - b)", {"a": 0, "b": 0}, ["a"], "switch at once"),
+        ("where(t > a, 1, 0)*where(t > b, 1, 2)", {"a": 1, "b": 1}, ["a"], "a < t and b < t switch at the same time"),
+        ("-sign(omega_3 - a) - sign(omega_3 - b)", {"a": 0, "b": 0}, ["a"], "switch at the same time"),
         ("where(t >= a, 1, 0)", {"a": 0}, ["a"], "starts where t < a switches"),
         ("floor(omega_3) - 3", {}, ["omega_3"], "starts where floor"),
         ("abs(omega_1)", {}, ["omega_1"], "stays at zero"),

@@ -120,6 +120,7 @@ def test_any_even_order(order):
     assert abs(states[0] - (math.cos(3), math.sin(3))).max() < 1e-6
 
 
+@pytest.mark.usefixtures("quick_compiler")
 @pytest.mark.thinned(2)
 @pytest.mark.parametrize(
     "name", ["heavy_top_loops", "gravity_gradient_satellite", "damped_disk", "gyrostat", "t_handle"]
@@ -172,13 +173,14 @@ def test_the_error_of_the_trajectory_stays_near_the_tolerance(name, tolerance):
     assert error(states, reference(name)) < 10 * tolerance
 
 
+@pytest.mark.usefixtures("quick_compiler")
 def test_orders_for_tolerances_keep_the_promise():
     """Loose tolerances take lower orders, and their errors are within the promise too."""
     assert [taylor.order_for(e) for e in (1e-2, 1e-3, 1e-4, 1e-6, 1e-7, 1e-15)] == [14, 14, 16, 16, 20, 20]
     for tolerance in (1e-2, 1e-3, 1e-4, 1e-5, 1e-6):
         source = taylor.translation_unit(rigid_body_program(), order=taylor.order_for(tolerance))
+        path = library.build(source, "body")
         for name in MOTIONS:
-            path = library.build(source, "body")
             states, _ = taylor.integration(path, parameters(name), MOTIONS[name][2], 0.0, tolerance).sample(TIMES)
             assert error(states, reference(name)) < 10 * tolerance
 
@@ -199,7 +201,8 @@ def test_long_motions_keep_the_promise(name):
     assert problem.largest_error(states[0], exact) < 2e-12
 
 
-def test_the_kept_references_are_those_computed(tmp_path, monkeypatch):
+@pytest.mark.usefixtures("quick_compiler")
+def test_the_kept_references_are_those_computed():
     """40-digit series over a short span both ways agree with the stepper near round-off, and not with a wrong state."""
     exact = bench.reference("heavy symmetric", 0.01)
     problem = bench.SteppedProblem("heavy symmetric", 0.01)
@@ -213,6 +216,7 @@ def test_the_kept_references_are_those_computed(tmp_path, monkeypatch):
 REFERENCE = tomllib.loads((Path(__file__).parents[1] / "reference" / "trajectories.toml").read_text())
 
 
+@pytest.mark.usefixtures("quick_compiler")
 @pytest.mark.parametrize("name", [name for name in REFERENCE if name != "t_handle"])
 @pytest.mark.parametrize("tolerance", [1e-4, 1e-8, 1e-12])
 def test_shipped_scenes_keep_the_promise(name, tolerance):
@@ -296,6 +300,7 @@ def dop853_states(motion, times):
     return dop853.integration(dop853_body(), p, start, 0.0, 1e-13).sample(times)[0]
 
 
+@pytest.mark.usefixtures("quick_compiler")
 def test_a_polynomial_motion_takes_few_steps():
     path = small({"x": "3*t**2", "y": "x"}, scale=0.0)
     states, stats = taylor.integration(path, [0.0], [0.0, 1.0], 0.0, 1e-12).sample([1000.0])
@@ -361,6 +366,7 @@ def test_the_longest_step_is_kept():
 # ------------------------------------------------------------------------------------------------ limits
 
 
+@pytest.mark.usefixtures("quick_compiler")
 @pytest.mark.parametrize(
     "rates, start, words",
     [

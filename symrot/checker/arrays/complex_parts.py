@@ -200,7 +200,7 @@ def is_complex(sides: Sequence[Node], letter: str) -> bool:
 def with_parts(relation: tuple[str, Node, Node], letter: str, source: str) -> tuple[str, Node, Node]:
     """Return a complex equation with each side as a column (real part, imaginary part).
 
-    If a side is a name alone, it stays a name, and the other side becomes its real part if its imaginary part is zero.
+    A side that is a name alone stays a name; if the other side has no imaginary part, its real part replaces it.
     ``letter`` is the imaginary unit, ``source`` the typed text, for messages.
 
     Raises

@@ -17,18 +17,18 @@ __all__ = ["EquivalentClaim"]
 
 @dataclass(frozen=True)
 class EquivalentClaim:
-    """An equivalent form of a typed claim.
+    """A claim that is equivalent to the claim that a user typed, in another form or with other names.
 
     Attributes
     ----------
     claim : Claim
         The claim in the other form.
     original : callable
-        Rewrites an equation of this form as one of the typed form.
+        Rewrites an equation, such as a repair of ``claim``, in the form and with the names that the user typed.
     note : str
         A sentence that tells the user about the form.
     names : mapping
-        Name in this form -> name in the typed claim, where they differ.
+        Name in ``claim`` -> name that the user typed, where they differ.
     """
 
     claim: Claim

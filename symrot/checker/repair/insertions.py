@@ -31,7 +31,7 @@ entry of ``LARGE`` nodes or more.
 """
 
 MOST_TERMS = 60
-"""A sum with more terms is not factored to become one term."""
+"""The largest number of terms in a sum that is factored to become one term."""
 
 MOST_LETTERS = 240
 """The largest number of characters in a term that a repair may add."""

@@ -176,8 +176,8 @@ def _on_rotations(claim: Claim, verdict: Verdict) -> Verdict:
 def _on_rotation_by_letter(claim: Claim, verdict: Verdict) -> Verdict:
     """Return "conditional" for a condition such as ``R R^T = I`` that all rotations R satisfy; otherwise ``verdict``.
 
-    Only claims about one matrix, whose letter books use for rotations, are changed. If some rotations do not satisfy
-    the condition, the verdict gets a note that says so.
+    The verdict changes only for a claim about a single matrix with a letter that books use for rotations, such as R. If
+    some rotations do not satisfy the condition, the verdict gets a note that says so.
     """
     names = matrices_of_entries(claim.define)
     if len(names) != 1 or not ROTATION.fullmatch(names[0]):

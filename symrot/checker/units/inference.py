@@ -382,7 +382,10 @@ def _power(inference: UnitInference, node: Node) -> Value:
     inference.plain(
         inference.value(node.args[1]), f"the exponent {piece_text(node.args[1])} is {{0}} instead of a number"
     )
-    return inference.plain(base, f"{piece_text(node.args[0])}, under a symbolic exponent, is {{0}} instead of a number")
+    return inference.plain(
+        base,
+        f"{piece_text(node.args[0])}, the base of a power with letters in its exponent, is {{0}} instead of a number",
+    )
 
 
 def _index(inference: UnitInference, node: Node) -> Value:

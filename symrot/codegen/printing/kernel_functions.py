@@ -1,6 +1,7 @@
-"""Text that the languages share: functions, such as sinc, that <math.h> does not contain, and arguments in Python.
+"""Text that printed kernels of several languages share.
 
-See :mod:`symrot.kernels.removable`.
+It defines functions such as sinc, which <math.h> does not contain (:mod:`symrot.kernels.removable`), and checks the
+arrays that a caller passes to a kernel in Python.
 """
 
 from collections.abc import Collection, Iterable, Iterator

@@ -78,7 +78,7 @@ def crank_torque(random: Random) -> Problem:
         + r" Gas pushes the piston towards the crank with the force $F_x$; masses are neglected.",
         r"The power of the force equals the power of the torque on the crank, $F_x \, (-\dot x) = \tau\dot\phi$.",
         (CRANK, ROD, ANGLE, quantity(F_x, "500 1000 2000 4000", "N", "force")),
-        (Line("The force times the derivative of the distance by the angle.", torque, formula, r"\tau"),),
+        (Line("The force times the derivative of the distance with respect to the angle.", torque, formula, r"\tau"),),
         (Asked(r"\tau", "the torque on the crank", formula, "N m"),),
         lambda values: values[r] < values[L],
     )

@@ -159,7 +159,7 @@ class Crossings:
             groups.append([mode]) if group is None else group.append(mode)
         if len(groups) == 1:
             return None
-        refusal = guards.refusal(interval.end, f"{' and '.join(map(guards.name, flips))} switch at once")
+        refusal = guards.refusal(interval.end, f"{' and '.join(map(guards.name, flips))} switch at the same time")
         if not alone or len(groups) > MOST_AT_ONCE:
             raise refusal
         corners = {}

@@ -38,7 +38,7 @@ class RoundingSum:
             self.beyond = t
 
     def fields(self) -> dict[str, float]:
-        """Return the fields of a run in C with which it continues the sum."""
+        """Return the sum of errors so far, as fields of the struct with which a run in C adds further errors."""
         return {"rounded": self.squares, "largest": self.size}
 
     def read(self, run: Any) -> None:

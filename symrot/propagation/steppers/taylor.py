@@ -64,7 +64,7 @@ ORDERS = {  # for few and for many products: least tolerance, and the fastest or
 def step_tail(tolerance: float) -> tuple[float, float]:
     """Return a limit for the last terms of a step's Taylor series, and the step length for which the limit holds.
 
-    The length is a fraction of the span.
+    The length is given as a fraction of the time for which the motion is computed.
     """
     # The stepper multiplies the limit by r^(7/4) in a step that is r times as long. For n equal steps, r is
     # proportional to 1/n, and their errors add up to about n^(7/4) times one of them: the final error hardly depends
@@ -196,7 +196,7 @@ class _Stepper(Stepper):
     steps_per_call, rows_per_call = 50_000, 64
     reasons: ClassVar = {
         NOT_FINITE: "its derivatives are not finite there",
-        ROUNDED: "its torque, a formula of the time, changes by more than the tolerance when the formula is rounded",
+        ROUNDED: "rounding errors in a formula of the time change its torque by more than the tolerance",
         UNDERFLOW: "the step shrank to nothing, as it does before a singularity",
         PAUSED: "{steps} steps were not enough",
     }

@@ -1,4 +1,4 @@
-"""The changes of modes where a guard is zero: a function switches, is held at zero, or comes to rest there."""
+"""What follows when the argument of a switching function is zero: it passes zero, stays there, or leaves again."""
 
 import math
 from collections.abc import Callable, Sequence

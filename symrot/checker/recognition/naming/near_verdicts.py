@@ -47,7 +47,7 @@ from symrot.exact.ring.ratio import TooLarge
 __all__ = ["MOST_PROOFS", "formulas_nearby", "nearest_verdict", "verdict_near_relation"]
 
 MOST_SOLVED = 4
-"""The largest number of letters for which an equation is solved, to compare it with known relations."""
+"""An equation is compared with known relations after it is solved for each letter, for at most this many letters."""
 
 PER_NAME, PER_PLACE = 0.1, 0.3
 """The cost of each symbol that has another letter than in the known formula, and of each contradiction between the
@@ -94,7 +94,7 @@ def _near_inside(claim: Claim, named: NamedFormula) -> Verdict | None:
 
 
 def _near_by_quantity(claim: Claim, named: NamedFormula) -> Verdict | None:
-    """Return the verdict "doubtful" if a change on the quantity's side, such as k to k^2, gives a known formula.
+    """Return the verdict "doubtful" if a change of the side that is a name, such as k to k^2, gives a known formula.
 
     Otherwise return None.
     """

@@ -33,7 +33,10 @@ AXES = ("123", "xyz")
 
 
 class QuantityVariant(NamedTuple):
-    """Both sides of a claim after a fault on the quantity's side is undone, with the fault's code and cost."""
+    """Both sides of a claim such as ``k = ..`` after a fault in its name side is undone, such as k for k^2.
+
+    ``code`` names the fault; ``cost`` is larger for rarer faults.
+    """
 
     side: Node
     formula: Node
