@@ -56,9 +56,9 @@ def box_of(low, high, count=3):
     return {f"x[{i}]": (Fraction(low), Fraction(high)) for i in range(count)}
 
 
-def bound_of(body, low, high, real="double", count=3):
-    operations = kernel(body, real)
-    return bound_outputs(operations, {p: box_of(low, high, count)[p] for p in operations.inputs}, fresh=True)[0]
+def bound_of(body, low, high, real="double"):
+    operations, box = kernel(body, real), box_of(low, high)
+    return bound_outputs(operations, {p: box[p] for p in operations.inputs}, budget=BUDGET, fresh=True)[0]
 
 
 # --- known errors -----------------------------------------------------------------------------------------------------
@@ -181,7 +181,7 @@ def rows_of(name, suffix):
     operations = operations_of(name, text_of(name))[1 if suffix else 0]
     problem = library_problem(definition(name), operations)
     bounds = bound_outputs(operations, problem.box, problem.region, BUDGET)
-    return compare(operations, bounds, measure(operations, problem.box, bounds, problem.region, 3000), name)
+    return compare(operations, bounds, measure(operations, problem.box, bounds, problem.region, 2000), name)
 
 
 @pytest.mark.thinned(8)

@@ -306,7 +306,7 @@ FUNCTIONS = ("log", "exp", "sqrt", "sin", "asin", "acos", "atan", "cosh", "tanh"
 
 
 @pytest.mark.thinned(4)
-@pytest.mark.parametrize("deep", [5, 12, 50])
+@pytest.mark.parametrize("deep", [4, 12, 50])
 @pytest.mark.parametrize("function", FUNCTIONS)
 def test_a_tower_of_functions_has_an_answer(function, deep):
     tower = f"{function}(" * deep + "x" + ")" * deep
@@ -330,7 +330,7 @@ def test_functions_that_are_nested_too_deeply_are_refused_in_one_sentence():
 
 @pytest.mark.parametrize("function", FUNCTIONS)
 def test_a_tower_over_a_number_has_an_answer(function):
-    assert verdict_of(f"{function}(" * 12 + "3" + ")" * 12 + " == 1") in ("false", "undecided", "refused")
+    assert verdict_of(f"{function}(" * 8 + "3" + ")" * 8 + " == 1") in ("false", "undecided", "refused")
 
 
 def test_the_readings_of_one_decision_are_counted():
@@ -375,7 +375,7 @@ def test_a_long_sum_is_read():
     ("atan2(-sin(a), -cos(a)) == a", "false", None), ("atan2(cos(a), sin(a)) == a", "false", None),
 ])  # fmt: skip
 def test_atan2_of_the_components_of_a_direction_is_its_angle_on_one_branch(claim, verdict, condition):
-    decided = symrot.check(claim)
+    decided = symrot.check(claim, repair=False)
     assert (decided.verdict, *decided.requires) == (verdict, *([condition] if condition else []))
     assert decided.counterexample
 
@@ -386,5 +386,5 @@ def test_atan2_of_the_components_of_a_direction_is_its_angle_on_one_branch(claim
     ("x/x == 1", ("x != 0",)), ("(x**2 + 1)/(x**2 + 1) == 1", ()), ("sqrt(1 - x**2)**2 == 1 - x**2", ("-1 <= x <= 1",)),
 ])  # fmt: skip
 def test_a_condition_that_holds_everywhere_or_follows_from_another_is_not_printed(claim, where):
-    decided = symrot.check(claim)
+    decided = symrot.check(claim, repair=False)
     assert tuple(text for text in decided.conditions if text not in decided.requires) == where

@@ -102,7 +102,7 @@ def test_a_formula_for_another_quantity_is_repaired_if_its_letters_are_stated():
     assert [repair.text for repair in symrot.check("Omega = I_t/I_a nu", where=where).repairs] == ["Omega = I_a/I_t*nu"]
 
 
-@pytest.mark.thinned(4)
+@pytest.mark.thinned(6)
 @pytest.mark.parametrize(("claim", "code", "repaired"), FAULTS)
 def test_the_part_at_fault_is_named_and_repaired(claim, code, repaired):
     verdict = symrot.check(claim)

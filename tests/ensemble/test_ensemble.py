@@ -337,7 +337,7 @@ def test_every_trajectory_is_that_of_its_own_scene(torque, parameters):
 def test_only_what_has_no_closed_form_is_stepped():
     torque = [{"kind": "constant_body", "torque": [0, 0, "1/10"]}]
     rates = [[0, 0, 1.0], [0.1, 0, 1.0], [0, 0, -2.0]]
-    found = symrot.propagate_ensemble(scene(torque=torque), omega=rates, t=[0, 2, 4000.0])
+    found = symrot.propagate_ensemble(scene(torque=torque), omega=rates, t=[0, 2, 40.0])
     assert found.methods == ("exact", "taylor", "exact")
     assert abs(found.omega[0, :, 2] - (1 + 0.1 * found.t / 2.5)).max() < 1e-14
     assert repr(found) == "<Ensemble of test: 3 trajectories, 3 samples, exact/taylor>"
@@ -484,8 +484,8 @@ def test_a_cached_ensemble_imports_neither_sympy_nor_scipy():
         "import sys, symrot; e = symrot.propagate_ensemble('gravity_gradient_satellite', t=[0, 1.0]); "
         "print(e.methods, [m for m in ('sympy', 'scipy') if m in sys.modules])"
     )
-    for _ in range(2):
-        done = subprocess.run([sys.executable, "-c", code], capture_output=True, text=True, env=dict(os.environ))
+    symrot.propagate_ensemble("gravity_gradient_satellite", t=[0, 1.0])
+    done = subprocess.run([sys.executable, "-c", code], capture_output=True, text=True, env=dict(os.environ))
     assert done.stdout.strip() == "('taylor',) []", done.stderr
 
 

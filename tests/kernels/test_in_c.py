@@ -31,7 +31,7 @@ def compiled(*arguments):
     return subprocess.run(list(map(str, arguments)), check=True, capture_output=True, text=True)
 
 
-@pytest.mark.thinned(2)
+@pytest.mark.thinned(3)
 @needs_cc
 @pytest.mark.parametrize("compiler", COMPILERS)
 @pytest.mark.parametrize("language", [["-x", "c", "-std=c99"], ["-x", "c++", "-std=c++17"]], ids=["c99", "c++17"])
@@ -44,7 +44,7 @@ def test_a_program_of_ones_own_builds_and_runs(compiler, language, tmp_path):
     assert compiled(program).stdout == "kernels agree\n"
 
 
-@pytest.mark.thinned(3)
+@pytest.mark.thinned(4)
 @needs_cc
 @pytest.mark.parametrize("name", ["euler_zxz_body_rates", "euler_zyx_dcm", "rotation_vector_body_jacobian", "rotation_vector_space_rates",
                                   "rotation_vector_dcm", "rotation_vector_of_quaternion", "euler_zyx_of_quaternion",
@@ -100,8 +100,8 @@ def test_sine_and_cosine_are_within_one_unit_in_the_last_place(flags, tmp_path):
     """References are 64-bit sines; arguments include doubles next to multiples of pi/2, where digits cancel."""
     found = harness(tmp_path, *flags)
     assert found.symrot_worst_at_multiples(MULTIPLES) <= 1
-    assert found.symrot_worst_double(200_000, float(FAR["binary64"]), 7) <= 1
-    assert found.symrot_worst_double(200_000, 4.0, 8) <= 1
+    assert found.symrot_worst_double(50_000, float(FAR["binary64"]), 7) <= 1
+    assert found.symrot_worst_double(50_000, 4.0, 8) <= 1
     assert found.symrot_worst_float(bits(0.75), bits(0.8)) <= 1
 
 
@@ -117,8 +117,10 @@ def test_sine_and_cosine_campaign(flags, tmp_path):
 
 
 @needs_cc
-def test_what_kernels_call_is_within_its_stated_error():
+def test_what_kernels_call_is_within_its_stated_error(monkeypatch):
     """One sample and a batch, double and float: 4 ulp at removable singularities, 1 ulp elsewhere."""
+    points = ulps._points
+    monkeypatch.setattr(ulps, "_points", lambda *given: points(*given)[:, ::3])
     found = list(ulps.measured(80, ("fused",)))
     both, batch = ({"one", "batch"}, {"batch"})
     stated = {"sinc": both, "sine_gap": both, "tangent_gap": both, "tangent_gap >pi": both, "arc_ratio": both,
@@ -194,6 +196,7 @@ def test_fast_math_is_refused(tmp_path):
     assert "without -ffast-math" in refused.value.stderr
 
 
+WORKS = "-DCMAKE_C_COMPILER_WORKS=1"  # saves CMake a program that it compiles to learn this
 needs_cmake = pytest.mark.skipif(not shutil.which("cmake"), reason="needs CMake")
 
 
@@ -205,7 +208,7 @@ def project(folder, components, linked):
         f"find_package(symrot 0.2 REQUIRED COMPONENTS {components} PATHS {KERNELS} NO_DEFAULT_PATH)\n"
         f"add_executable(firmware {EXAMPLE})\ntarget_link_libraries(firmware PRIVATE {linked})\n"
     )
-    return ["cmake", "-S", folder, "-B", folder / "build"]
+    return ["cmake", "-S", folder, "-B", folder / "build", WORKS]
 
 
 @needs_cc
@@ -233,15 +236,16 @@ def test_a_component_that_is_no_kernel_is_refused_in_a_sentence(tmp_path):
 def test_pkg_config_knows_installed_kernels_by_name(tmp_path):
     """Three kernels are built and installed; a program takes them by pkg-config, also after a step from another folder."""
     compiled(
-        "cmake", "-S", KERNELS, "-B", tmp_path / "build", f"-DSYMROT_KERNELS={';'.join(USED)}",
+        "cmake", "-S", KERNELS, "-B", tmp_path / "build", WORKS, f"-DSYMROT_KERNELS={';'.join(USED)}",
         f"-DCMAKE_INSTALL_PREFIX={tmp_path / 'prefix'}",
     )  # fmt: skip
     compiled("cmake", "--build", tmp_path / "build", "--target", "install")
     assert len([*(tmp_path / "build").rglob("*.c.o")]) == len(USED)
     assert main(["emit", "tumbling_prism", "--step", "rk4", "--cmake", "-o", str(tmp_path / "step")]) == 0
     compiled(
-        "cmake", "-S", tmp_path / "step", "-B", tmp_path / "other", f"-DCMAKE_INSTALL_PREFIX={tmp_path / 'prefix'}"
-    )
+        "cmake", "-S", tmp_path / "step", "-B", tmp_path / "other", WORKS,
+        f"-DCMAKE_INSTALL_PREFIX={tmp_path / 'prefix'}",
+    )  # fmt: skip
     compiled("cmake", "--build", tmp_path / "other", "--target", "install")
     search = {"PKG_CONFIG_PATH": str(tmp_path / "prefix" / "lib" / "pkgconfig")}
     names = [f"symrot-{name}" for name in (*USED, "tumbling_prism_rk4_step")]

@@ -322,9 +322,9 @@ def test_an_audit_refuses_a_c_text_that_includes_another_file(tmp_path):
 
 @pytest.fixture(scope="module")
 def certified(tmp_path_factory):
-    """Return the folder and the certificate of a step of order 3, with bounds."""
+    """Return the folder and the certificate of a step of order 2, with bounds."""
     folder = tmp_path_factory.mktemp("step")
-    return folder, symrot.certify("tumbling_prism", BOX, directory=folder, step="taylor", order=3)
+    return folder, symrot.certify("tumbling_prism", BOX, directory=folder, step="taylor", order=2)
 
 
 def test_a_certificate_bounds_the_errors_of_one_step(certified):
@@ -342,7 +342,7 @@ def test_emitting_a_step_again_keeps_the_bounds_in_its_certificate(certified, tm
     folder, _ = certified
     for path in folder.iterdir():
         (tmp_path / path.name).write_bytes(path.read_bytes())
-    step = ["tumbling_prism", "--step", "taylor", "--order", "3"]
+    step = ["tumbling_prism", "--step", "taylor", "--order", "2"]
     assert main(["emit", *step, "--cmake", "-o", str(tmp_path)]) == 0
     (path,) = tmp_path.glob("*.cert.json")
     assert path.read_text() == next(folder.glob("*.cert.json")).read_text() and (tmp_path / "CMakeLists.txt").exists()
@@ -396,7 +396,7 @@ def _other_entry(section, name, value=1):
     (_other_entry("", "title", "a step without errors"), "'title' and 'kernel' to name the scene tumbling_prism"),
     (_other_entry("", "regenerate", "symrot emit other"), "the command of the step"),
     # otherwise the rates would not be compared with those of tumbling_prism
-    (_other_entry("", "regenerate", "symrot emit other --step taylor --order 3 --target c"), "to name the scene other"),
+    (_other_entry("", "regenerate", "symrot emit other --step taylor --order 2 --target c"), "to name the scene other"),
     (_smaller_truncation, "expected the bounds that symrot computes"), (_smaller_rounding, "expected"),
     (_other_rates, "expected next"), (_other_order, "expected the order|expected next"), (_other_text, "an edited one"),
     (_other_parameter, "the parameters that the certificate states"),
