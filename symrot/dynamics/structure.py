@@ -203,7 +203,7 @@ class Structure:
     def reductions(self) -> tuple[object, ...]:
         """The facts that eliminate states: ``planar``, ``initial_quaternion`` and ``constant``, see :class:`Structure`.
 
-        Two structures with the same reductions have the same states.
+        Two structures with the same reductions, ``attitude`` and ``sequence`` have the same states.
         """
         return self.planar, self.initial_quaternion, self.constant
 

@@ -81,7 +81,8 @@ def span_of(content: bytes, owner: str, number: int, element: str) -> tuple[Span
     owner, number : str and int
         The tag of the parent, and its index, from 0, among the elements with this tag in the order of the file.
     element : str
-        The tag of the child. If the parent has no such child, the range is empty, at the byte where it can be inserted.
+        The tag of the child. If the parent has no such child, the range is empty: at the byte where
+        the child can be inserted or, if the parent is one tag that ends with ``/>``, behind this tag.
     """
     parser = expat.ParserCreate()
     stack: list[bool] = []  # for each open element whether it is the parent

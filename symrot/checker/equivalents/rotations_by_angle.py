@@ -22,7 +22,7 @@ NOTE = "R(..) is read as the rotation by an angle in a plane, or about one fixed
 
 def with_axis(source: str) -> tuple[str, str]:
     """Return a text with ``R_z(..)`` for ``R(..)``, and a note, for an equation between rotations by several angles or
-    one numeric angle. Other texts are returned unchanged, with an empty note.
+    one angle of digits and pi alone, such as ``R(π)^2 = I``. Other texts are returned unchanged, with an empty note.
 
     Examples
     --------

@@ -221,7 +221,7 @@ class _Interpreter(Cursor):
     def differentiated(self, operand: Row | None) -> Any:
         r"""Return the formula to differentiate: ``x`` in ``\frac{d x}{dt}`` as in ``\frac{d}{dt} x``."""
         if operand is None:
-            raise self.fail("d or \\partial in the numerator of a derivative")
+            raise self.fail("\\partial in the numerator of a partial derivative")
         # the numerator after its d or, if it is empty, the term after the fraction
         return self.value(operand) if operand.items else self.term()
 
