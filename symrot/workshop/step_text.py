@@ -115,7 +115,8 @@ def _exact(scene: Scene, order: int | None, jacobian: Sequence[str]) -> KernelTe
 def _steady_rotations(scene: Scene) -> SteadyRotations | None:
     """Return the closed form of a scene's motion if its attitude is a product of steady rotations, otherwise None.
 
-    It is known for free spheres and symmetric bodies given along principal axes, also with one rotor on the symmetry axis.
+    It is known for free spheres and symmetric bodies given along principal axes, also with one rotor along the symmetry
+    axis.
     """
     kinds, principal = [torque.kind for torque in scene.torques], scene.body.principal
     if not principal.given_axes or kinds not in ([], ["rotor"]):
