@@ -234,8 +234,10 @@ def _plain(vector: str) -> str:
 def _values(
     names: Mapping[str, str], still: str, moving: str, vector: str, angular: str, sign: int
 ) -> dict[Symbol, Any]:
-    """Return the value of each component, by its symbol: those of both rates, of the vector, and of ``sign`` times the
-    angular velocity, all along the axes of the moving frame.
+    """Return a map from symbols of components, such as ``v_x``, to formulas along the axes of the moving frame.
+
+    They are the components of the vector, of its rates as seen from the still and from the moving frame, and of ``sign``
+    times the angular velocity.
     """
     angles = [Function(f"angle_{number}", real=True)(time) for number in range(3)]
     turned = (

@@ -21,8 +21,8 @@ __all__ = ["Invariant", "find_invariants", "rate_along"]
 
 
 TORQUE_PHRASES = {
-    "constant_body": "the torque constant in the body",
-    "constant_space": "the torque constant in space",
+    "constant_body": "the torque with constant body components",
+    "constant_space": "the torque with constant space components",
     "expression": "the torque given by formulas",
     "rotor": "the rotor",
     "spring": "the spring",

@@ -228,7 +228,11 @@ def _pierces(
 
 
 def _require_contacts(surface: Surface, contacts: Floats, where: str) -> int:
-    """Return the number of contacts around which all winding numbers are 0 or 1; raise InputError if one is not."""
+    """Check the winding numbers of a surface around points where its parts touch; return how many points were checked.
+
+    Raise InputError if a winding number is neither 0 nor 1. At most ``len(contacts)`` points are checked, fewer for
+    large surfaces.
+    """
     size = float(np.ptp(surface.vertices, axis=0).max())
     corners = (surface.vertices - surface.vertices.min(axis=0))[surface.triangles] / size
     most = max(1, MOST_ANGLES // (DIRECTIONS * len(corners)))

@@ -373,7 +373,9 @@ def _vector(scene: SceneContent, path: Path) -> Sequence[Any]:
 
 
 def _constant_of_torque(scene: SceneContent, path: Path) -> Fraction | tuple[Fraction, ...] | None:
-    """Return the exact value of a torque's constant that the file leaves out, such as the weight if it gives gravity.
+    """Return the exact value of a torque's constant that the file does not give, but that follows from others.
+
+    The weight, for instance, follows from the mass and the acceleration of gravity.
 
     None if the path names no such constant.
     """

@@ -227,7 +227,10 @@ def _is_power(value: float) -> bool:
 
 
 def _inexact(exact: Bounded, unit: float) -> Bounded:
-    """Return the result of one operation with exact interval and propagated errors, after its rounding."""
+    """Return the result of one operation after rounding.
+
+    ``exact`` is the result before rounding: an interval for its exact value, and the errors that its operands caused.
+    """
     error = (exact.error + unit * (exact.most + exact.error)) * _GROW + _UNDER
     small = _UNDER / exact.least if exact.least > 0 else inf
     relative = (exact.relative + unit * (1 + exact.relative) + small) * _GROW

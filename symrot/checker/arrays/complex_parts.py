@@ -142,7 +142,7 @@ def with_numbers(tree: Node, numbers: Mapping[str, Node]) -> Node:
 def open_numbers(formulas: Sequence[Node], letter: str = "i") -> dict[str, Node]:
     """Return {"z": ``Re_z + i*Im_z``} for the complex numbers that nothing defines, as z in ``|z|^2 = z z_bar``.
 
-    Return {} if they may be real numbers. ``letter`` is the imaginary unit i.
+    Return {} if the undefined names may be real numbers. ``letter`` is the imaginary unit i.
     """
     nodes = nodes_of(*formulas)
     names = [str(node.value) for node in nodes if node.kind == "name"]

@@ -1,4 +1,5 @@
-"""Claims about the determinant of a rate Jacobian, such as ``det T = -sin(theta)``, which tells singular angles.
+"""Claims about the determinant of a rate Jacobian, such as ``det T = -sin(theta)``, whose zeros are the
+singular angles.
 
 The determinant depends on the second angle alone. Its sign depends on the order of the angles, which the claim does
 not state: either sign is recognised.

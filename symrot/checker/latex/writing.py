@@ -56,7 +56,7 @@ class LatexNotation:
         return latex_of(relation, self.functions, self.vectors) or f"{text(left)} {sign} {text(right)}"
 
     def rewritten(self, source: str) -> str:
-        """Return the LaTeX of an equation in SymPy syntax, or the text itself, as :func:`latex_of_text`."""
+        """Return the LaTeX of an equation in SymPy syntax; ``source`` unchanged if no LaTeX has the same meaning."""
         return latex_of_text(source, self.functions, self.vectors)
 
     def condition(self, source: str) -> str:

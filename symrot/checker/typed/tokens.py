@@ -174,7 +174,10 @@ def _accents_after_letters(text: str, places: list[int]) -> tuple[str, list[int]
 
 
 def _without_blanks_before_dots(text: str, places: list[int]) -> tuple[str, list[int]]:
-    """Return a text with ``ω˙ =`` for ``ω ˙ =``, and the positions of its characters in the source, ``places``."""
+    """Return a text with ``ω˙ =`` for ``ω ˙ =``, and where each of its characters is in the source.
+
+    ``places`` are the positions of the characters of ``text``.
+    """
     dots = "".join(_DOTS)
     # some PDFs have a blank between a letter and its dot; a dot before a letter may belong to that letter
     gaps = [match.start(1) for match in re.finditer(rf"(?<=[^\W\d_])( )[{dots}](?=\s|$)", text)]

@@ -27,7 +27,9 @@ Slopes = Mapping[str, float]
 
 
 def places_within(begin: float, times: Floats) -> Floats:
-    """Return some times between ``begin`` and the first and last of ``times``, for :func:`rests_at_corner`."""
+    """Return arbitrary times for :func:`rests_at_corner`: some from ``begin`` to the last of ``times``, and some to the
+    first, if ``times`` begin before ``begin``.
+    """
     ends = {float(times.min()), float(times.max())} - {begin} if len(times) else set[float]()
     return np.array([begin + part * (end - begin) for end in sorted(ends) for part in PLACES])
 

@@ -76,9 +76,10 @@ class ParameterSlopes:
     def require_constant(
         self, formula: Node, constants: Mapping[str, Fraction], ends: Sequence[int], label: str
     ) -> None:
-        """Raise InputError if a formula without states has one of the values ``ends``, and a variable changes it.
+        """Raise InputError if the argument of a function lies at a jump or kink, and a variable moves it away.
 
-        ``label`` is the function with a jump or kink there, such as ``"sign(c - 1)"``.
+        ``formula`` is the argument, without states; the jumps and kinks are at its values ``ends``. ``label`` is the
+        function in messages, such as ``"sign(c - 1)"``.
         """
         value = value_of(formula, constants)
         if value not in ends:

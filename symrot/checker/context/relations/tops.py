@@ -80,14 +80,16 @@ def _substitution(names: Mapping[Expr, str], values: dict[Expr, Expr], own: Sequ
 
 
 def _mapping(names: Mapping[Expr, str], values: Mapping[Expr, Expr]) -> dict[str, str]:
-    """Return the claim's letter for each symbol of the relation that has another letter: {"A": "I_1"}."""
+    """Return a map from symbols of the relation to other letters that the claim has for them: A to I_1."""
     return {str(value): names[atom] for atom, value in values.items()
             if isinstance(value, Symbol) and str(value) != names[atom]}  # fmt: skip
 
 
 def _is_fitting(names: Mapping[Expr, str], values: Mapping[Expr, Expr], own: Sequence[str], has_body: bool) -> bool:
-    """Return whether ``values``, formulas for a claim's letters, can mean a top: a moment of inertia, no quantity
-    twice.
+    """Return whether ``values``, the meanings of a claim's letters, make it a claim about a top.
+
+    At least one letter must be a moment of inertia, no two letters may have the same meaning, and the context
+    (``has_body``), a letter such as p_theta, or one of the titles ``own`` of its quantities must imply a top.
     """
     letters: dict[Expr, str] = {}
     # no two letters mean the same quantity

@@ -30,7 +30,7 @@ def rigid_bodies() -> Iterator[Named]:
         momentum = inertia * omega
         needed = inertia * rates + omega.cross(momentum)
         yield f"torque by Euler's equations, {axes}", page_of, needed
-        yield f"Euler's equations as torque minus its need, {axes}", page_of, torque - needed
+        yield f"Euler's equations with all terms on one side, {axes}", page_of, torque - needed
         yield f"gyroscopic torque omega x I omega, {axes}", page_of, omega.cross(momentum)
         yield f"angular momentum I omega, {axes}", "derivations/angular_momentum.md", momentum
         yield f"kinetic energy of rotation, {axes}", "derivations/kinetic_energy.md", omega.dot(momentum) / 2

@@ -160,8 +160,8 @@ RANDOM = (0.7310585786, 1.1752011936, 0.4812118251)
 def needed_values(named: NamedFormula, known: Known, target: Values, letters: Letters) -> Values | None:
     """Return the values that the claim's formula needs for its quantity to have the values ``target``.
 
-    For the claim ``2*T = ..`` these are twice the values. None if no formula gives the quantity these values: for
-    example if ``target`` is the negative square of the quantity, or if the claim is not solved for its quantity.
+    For the claim ``2*T = ..`` these are twice the values of ``target``. None if no values of the formula do so: in
+    ``k^2 = ..`` no formula gives k imaginary values. None also if the claim is not solved for its quantity.
     """
     function = _FUNCTIONS_OF_ENDINGS.get(ending_of(known.name))
     if function is None:
