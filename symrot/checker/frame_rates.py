@@ -236,8 +236,8 @@ def _values(
 ) -> dict[Symbol, Any]:
     """Return a map from symbols of components, such as ``v_x``, to formulas along the axes of the moving frame.
 
-    They are the components of the vector, of its rates as seen from the still and from the moving frame, and of ``sign``
-    times the angular velocity.
+    They are the components of the vector, of its rates as seen from the still and from the moving frame, and of
+    ``sign`` times the angular velocity.
     """
     angles = [Function(f"angle_{number}", real=True)(time) for number in range(3)]
     turned = (
