@@ -43,7 +43,7 @@ __all__ = [
 
 FOLDERS = ("codegen", "dynamics", "exact", "formula", "kernels", "kinematics")
 FILES = (
-    "planning/scene_kernel.py", "symbols.py", "propagation/steppers/taylor.py",
+    "planning/scene_kernel.py", "symbols.py", "propagation/steppers/taylor.py", "propagation/compiled_models.py",
     *taylor.FILES.values(),
 )  # fmt: skip  # the text of these files is cached together with the recurrences
 ATTITUDE_SCALE = 1.0  # a quaternion has unit norm; an error of an angle counts in rad

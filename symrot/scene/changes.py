@@ -198,12 +198,9 @@ def _whole_path(scene: SceneContent, key: str) -> Path:
 
 def _exclude(one: Path, other: Path) -> bool:
     """Return whether the values at two paths exclude each other, as mass and density of one shape do."""
-    # the first keys that differ, which are in the same table
-    return any(EXCLUSIVE.get((one[0], key)) == other_key for key, other_key in islice(_differences(one, other), 1))
-
-
-def _differences(one: Path, other: Path) -> Iterator[tuple[str | int, str | int]]:
-    return ((a, b) for a, b in zip(one, other, strict=False) if a != b)
+    # the first keys that differ, which are in the same table; names of parameters are the user's
+    key, other_key = next(((a, b) for a, b in zip(one, other, strict=False) if a != b), ("", ""))
+    return "parameters" not in one and EXCLUSIVE.get((one[0], key)) == other_key
 
 
 def _set(scene: SceneContent, key: str, value: Any) -> None:
@@ -220,7 +217,8 @@ def _set(scene: SceneContent, key: str, value: Any) -> None:
         return
     parent, last = _table(scene.content, place.path[:-1], key), place.path[-1]
     if isinstance(parent, dict):
-        parent.pop(EXCLUSIVE.get((place.path[0], last), ""), None)
+        if "parameters" not in place.path:
+            parent.pop(EXCLUSIVE.get((place.path[0], last), ""), None)
         parent[str(last)] = value
     elif isinstance(last, int) and last < len(parent):
         parent[last] = value

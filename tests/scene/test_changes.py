@@ -142,6 +142,14 @@ def test_mass_and_density_of_one_shape_exclude_each_other():
     scene.with_({"body.part[0].mass": 1, "body.part[1].density": 2})
 
 
+def test_parameters_of_a_torque_may_be_called_weight_and_gravity():
+    """A change of the parameter weight removed the parameter gravity."""
+    torque = {"kind": "expression", "torque": ["weight - gravity", "0", "0"], "parameters": {"weight": 1, "gravity": 2}}
+    scene = symrot.Scene.from_dict({**PRISM.to_dict(), "torque": [torque]})
+    both = scene.with_({"torque[0].parameters.weight": 5, "torque[0].parameters.gravity": 3})
+    assert both.to_dict()["torque"][0]["parameters"] == {"weight": 5, "gravity": 3}
+
+
 ANGLES = [0.1, 0.2, 0.3]
 ROTATION = Rotation.from_euler("ZXZ", ANGLES)
 

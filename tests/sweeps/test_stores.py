@@ -14,6 +14,7 @@ import symrot
 from symrot.errors import InputError
 from symrot.sweeps.chunk import Chunk
 from symrot.sweeps.design import Draws
+from symrot.sweeps.layout import Table
 from symrot.sweeps.stores.zarr_store import ZarrStore
 from tests.sweeps.scenes import OUTPUTS, sweep
 
@@ -339,7 +340,11 @@ def test_a_worker_writes_only_for_its_own_client_while_that_runs(tmp_path):
         assert stored(part, offer) == Written(0, 5)
         assert store.read("status", 0, 6).tolist() == [-1] * 5 + [0]
     with offered(store) as later:
-        for wrong in (offer, later._replace(mark="other machine"), later._replace(file=str(tmp_path / "none"))):
+        # the last: another folder of the same name, as in a container
+        for wrong in (
+            offer, later._replace(mark="other machine"), later._replace(file=str(tmp_path / "none")),
+            later._replace(folder=(0, later.folder[1])),
+        ):  # fmt: skip
             assert stored(part, wrong) is part
     assert stored(part, later) is part  # its client has ended
 
@@ -351,3 +356,20 @@ def test_a_client_that_is_killed_leaves_no_other_file_than_its_results(tmp_path)
     store = sweep(path=tmp_path / "a.zarr", chunk=5)._store
     with offered(store):
         assert [path.name for path in tmp_path.iterdir()] == ["a.zarr"]
+
+
+def test_statistics_of_values_that_another_process_removed_are_not_stored(tmp_path):
+    """The mean became NaN: the second process computed it from an array whose chunks were removed."""
+    path = tmp_path / "a.zarr"
+    before = sweep(path=path, statistics="envelope")._store
+    only = sweep(path=path, statistics="envelope", keep="statistics")
+    means = {
+        name: values.copy() for name, values in only.to_xarray().load().data_vars.items() if name.startswith("omega")
+    }
+    store = ZarrStore(path, before.header)
+    wrong = [Table(name, values.dims, np.full(values.shape, np.nan), {}) for name, values in means.items()]
+    store.finish(wrong, store.only_statistics)
+    after = sweep(path=path, statistics="envelope", keep="statistics").to_xarray().load()
+    assert means and all(np.array_equal(after[name].values, values.values) for name, values in means.items())
+    with pytest.raises(InputError, match="kept only its statistics"):
+        store.finish(wrong, "")

@@ -54,10 +54,13 @@ class Guards(RunState):
     def _names_of_held(self) -> str:
         return " and ".join(self._name(mode) for mode in sorted(self.held))
 
-    def _regime(self, modes: Modes) -> Regime:
-        """Return the smooth motion for given values of sign, abs, .., with the arguments of :attr:`held` at zero."""
+    def _regime(self, modes: Modes, held: frozenset[str] | None = None) -> Regime:
+        """Return the smooth motion for given values of sign, abs, .., with the arguments of ``held`` at zero.
+
+        By default these are the arguments that are now held, :attr:`held`.
+        """
         try:
-            return self.system.regime(self.held, modes)
+            return self.system.regime(self.held if held is None else held, modes)
         except InputError:  # the equations have no such motion or several
             raise IntegrationStopped(
                 self.t,

@@ -151,7 +151,7 @@ class ModeChanges(Guards):
 
         The other functions have the values in ``modes``, and the guards ``held`` stay at zero.
         """
-        regime = self.system.regime(held, modes)
+        regime = self._regime(modes, held)
         rates, values = regime.bound(modes, self.zero)
         piece, _ = next(smooth_pieces(self, regime, rates).pieces())
         signs, _ = signs_at_ends(regime.path, [guard.formula for guard in regime.guards], values, piece)

@@ -29,10 +29,12 @@ class Written(NamedTuple):
 
 
 class Offer(NamedTuple):
-    """What a worker needs to write: the path of the client's file in memory, its mark, and the store."""
+    """What a worker needs to write: the path of the client's file in memory, its mark, the folder, and the store."""
 
     file: str
     mark: str
+    # device and index node of the store's folder, which differ for another folder of the same name in a container
+    folder: tuple[int, int]
     # class, path and header of the store, pickled
     store: bytes
 
@@ -62,7 +64,13 @@ def offered(store: Store) -> Iterator[Offer | None]:
     with os.fdopen(os.memfd_create("symrot"), "wb", buffering=0) as stream:
         stream.write(mark.encode())
         file = f"/proc/{os.getpid()}/fd/{stream.fileno()}"
-        yield Offer(file, mark, pickle.dumps((type(store), path.resolve(), store.header)))
+        yield Offer(file, mark, _folder(path), pickle.dumps((type(store), path.resolve(), store.header)))
+
+
+def _folder(path: Path) -> tuple[int, int]:
+    """Return the device and the index node of a folder."""
+    state = path.stat()
+    return state.st_dev, state.st_ino
 
 
 @lru_cache(maxsize=1)
@@ -87,9 +95,9 @@ def stored(chunk: Chunk, offer: Offer) -> Chunk | Written:
     """
     try:
         store = _opened(offer.store, offer.mark) if _is_valid(offer) else None
-        if store is None or not store.path.is_dir():
+        if store is None or _folder(store.path) != offer.folder:
             return chunk
         store.write(chunk)
-    except Exception:  # a full disk, a package that is missing here
+    except Exception:  # a full disk, a folder or package that is missing here
         return chunk
     return Written(chunk.start, chunk.stop)

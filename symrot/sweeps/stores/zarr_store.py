@@ -13,6 +13,7 @@ from typing import Any
 import numpy as np
 from numpy.typing import NDArray
 
+from symrot.errors import InputError
 from symrot.sweeps.chunk import Chunk
 from symrot.sweeps.layout import (
     COMPONENT,
@@ -129,8 +130,18 @@ class ZarrStore:
         """Store the statistics ``tables`` at the end of a sweep.
 
         Remove the values of inputs and outputs if ``only_statistics``, a description of the statistics, is not empty.
+
+        Raises
+        ------
+        InputError
+            If another process has finished this sweep and kept only other statistics.
         """
-        for table in tables:
+        zarr = optional("zarr", "-o")
+        removed = str(zarr.open_group(str(self.path), mode="r").attrs.get(REMOVED, ""))
+        if removed and removed != only_statistics:
+            raise InputError(f"{self.path}: another process has finished this sweep and kept only its statistics")
+        # once values are removed, statistics may have been computed from what is left: those in the file stay
+        for table in () if removed else tables:
             _add(self._group, table)
         self._group.attrs[FINISHED] = True
         if only_statistics:
@@ -139,7 +150,6 @@ class ZarrStore:
             for variable in self.header.variables:
                 if variable.name in self._group:
                     del self._group[variable.name]
-        zarr = optional("zarr", "-o")
         with warnings.catch_warnings():  # zarr calls the consolidated form of version 3 experimental; xarray reads it
             warnings.simplefilter("ignore")
             zarr.consolidate_metadata(str(self.path))
