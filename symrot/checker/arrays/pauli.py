@@ -35,7 +35,9 @@ CALLS = ("sin", "cos", "sqrt", "Matrix", *OF_MATRICES)
 
 
 def with_pauli_matrices(relation: Relation, known: Collection[str]) -> tuple[Relation, tuple[tuple[str, Node], ...]]:
-    """Return an equation of Pauli's matrices with ``2*eye(4)`` for a scalar 2, and the definitions of these matrices.
+    """Return an equation of Pauli's matrices, written with real 4 x 4 matrices, and the definitions of these matrices.
+
+    A scalar 2 becomes ``2*eye(4)``.
 
     Any other equation is returned unchanged, without definitions.
 

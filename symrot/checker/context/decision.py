@@ -142,8 +142,8 @@ def _by_context(claim: Claim, named: NamedFormula, verdict: Verdict) -> Verdict:
 
 
 def _without_context(claim: Claim, named: NamedFormula) -> tuple[Identification, ...]:
-    """Return the known formulas that a claim equals with another place or frame in its context, or without the
-    context.
+    """Return the known formulas that would equal the claim if the context stated another point of the body, another
+    frame, or nothing.
     """
     context = claim.context
     if context.body and (context.place or context.body.axes):

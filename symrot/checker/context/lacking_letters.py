@@ -34,10 +34,11 @@ Assignments = Callable[[Known, Any, set[Expr]], Iterator[Mapping[Expr, Expr]]]
 def with_lacking_letters(
     named: NamedFormula, value: Any, meant: Iterator[tuple[Known, Any]], assignments: Assignments
 ) -> Verdict | None:
-    """Return the verdict "doubtful" on a claim's formula ``m*g*l`` if one of ``meant`` has one more term or factor.
+    """Return the verdict "doubtful" if a derived formula has one term or factor more than the claim's formula.
 
-    ``meant`` are the derived formulas that the context states word by word; ``assignments`` yields maps from the
-    symbols of a derived formula to letters of the claim. Return None if no such formula has one more term or factor.
+    For instance, the claim has ``m*g*l`` and the derived formula ``m*g*l*sin(theta)``. ``meant`` are the derived
+    formulas for what the context states in words; ``assignments`` yields maps from the symbols of a derived formula to
+    letters of the claim. Return None if no such formula has one more term or factor.
     """
     own = {*atoms_of([value])} - {time}
     if is_matrix(value) or len(own) < LEAST_LETTERS:

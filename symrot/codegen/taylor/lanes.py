@@ -310,7 +310,9 @@ class _Placer:
         return Row("sum", lanes, tuple(made), tuple(terms), None if set(constants) == {ZERO} else constants)
 
     def _columns(self, lanes: list[list[tuple[int, int]]]) -> Iterable[int]:
-        """Add columns that compute all products in ``lanes``, and yield the indices of the new columns.
+        """Add to the program vector operations that compute all products in ``lanes``; yield their indices.
+
+        Such an operation, called a column, acts on all lanes of a vector register at once.
 
         ``lanes[i]`` are the products in lane i, as (sign, index of the product).
         """

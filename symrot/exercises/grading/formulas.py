@@ -43,7 +43,7 @@ def mark_formula(key: str, answer: str, question: Question) -> Mark:
     Parameters
     ----------
     key : str
-        The name of the question on the mark.
+        The name of the question, which the mark repeats.
     answer : str
         The formula as typed text or LaTeX, with or without its name and ``=`` in front.
     question : Question

@@ -69,7 +69,7 @@ def _second_moments(body: Solid) -> tuple[Expr, Expr]:
 
 
 def _by_integration(body: Solid) -> tuple[Expr, tuple[Line, ...]]:
-    """Return a body's moment of inertia about z, and the lines of a solution that add two integrals to it."""
+    """Return a body's moment of inertia about z, and the lines of a solution that adds two integrals to obtain it."""
     moment = body.inertia[2, 2]
     law = "The integrals of $x^2$ and of $y^2$ over the mass are added."
     return moment, chain("I_{zz}", law, moment, written_sum(*_second_moments(body)), moment, ADD)

@@ -84,7 +84,9 @@ def smooth_intervals(motion: SwitchedMotion, end: float) -> tuple[list[Interval]
 
 
 def _without_returns(motion: SwitchedMotion, intervals: list[Interval], length: float) -> list[Interval]:
-    """Return the intervals without very short ones, where rounding errors make a guard pass zero before it is held."""
+    """Return the intervals without very short ones, in which only rounding errors make the argument of a switching
+    function pass zero, before sliding holds it at zero.
+    """
     result = intervals[:1]
     for current, following in pairwise([*intervals[1:], None]):
         assert current is not None

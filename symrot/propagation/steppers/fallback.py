@@ -35,7 +35,9 @@ __all__ = ["METHODS", "FallbackRecording", "Options", "WholeMotion", "integrate"
 
 Rhs = Callable[[float, Floats, Floats], ArrayLike]
 Clock = Callable[[float], tuple[Rhs, Sequence[float]]]
-"""Function from an epoch, s, to a right-hand side with time counted from the epoch, and its parameters."""
+"""A function of an epoch, s: it returns a right-hand side, whose time begins at the epoch, and the parameters of this
+right-hand side.
+"""
 Piece = tuple[float, float, Any]  # first time, last time, SciPy's solution between them
 
 
