@@ -198,9 +198,14 @@ def _whole_path(scene: SceneContent, key: str) -> Path:
 
 def _exclude(one: Path, other: Path) -> bool:
     """Return whether the values at two paths exclude each other, as mass and density of one shape do."""
-    # the first keys that differ, which are in the same table; names of parameters are the user's
-    key, other_key = next(((a, b) for a, b in zip(one, other, strict=False) if a != b), ("", ""))
-    return "parameters" not in one and EXCLUSIVE.get((one[0], key)) == other_key
+    # the first keys that differ, which are in the same table
+    return any(_rival(one, a) == b for a, b in islice(((a, b) for a, b in zip(one, other, strict=False) if a != b), 1))
+
+
+def _rival(path: Path, key: str | int) -> str:
+    """Return the key of the value that a value called ``key``, in a table on ``path``, replaces; empty if none."""
+    # names of parameters are the user's
+    return "" if "parameters" in path else EXCLUSIVE.get((path[0], key), "")
 
 
 def _set(scene: SceneContent, key: str, value: Any) -> None:
@@ -217,8 +222,7 @@ def _set(scene: SceneContent, key: str, value: Any) -> None:
         return
     parent, last = _table(scene.content, place.path[:-1], key), place.path[-1]
     if isinstance(parent, dict):
-        if "parameters" not in place.path:
-            parent.pop(EXCLUSIVE.get((place.path[0], last), ""), None)
+        parent.pop(_rival(place.path, last), None)
         parent[str(last)] = value
     elif isinstance(last, int) and last < len(parent):
         parent[last] = value
