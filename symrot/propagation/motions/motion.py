@@ -19,7 +19,7 @@ from symrot.propagation.method import Choice
 from symrot.propagation.motions.setup import Setup
 from symrot.propagation.steppers.integration_stopped import IntegrationStopped
 from symrot.propagation.steppers.recording import Recording
-from symrot.propagation.steppers.stats import Stats
+from symrot.propagation.steppers.stats import Stats, rounding_warning
 from symrot.propagation.steppers.stepping import NOT_FINITE_SENTENCE, Integration
 from symrot.scene.tables import Initial
 
@@ -82,10 +82,7 @@ class Motion(ABC):
                 f"{math.ulp(t):.1e} s apart, may change the motion by more than the tolerance; choose t = 0 nearer to "
                 "the motion, or a larger tolerance"
             )
-        return (
-            f"beyond t = {t!r} s the rounding of the torque, a formula of the time, may change the motion by more than "
-            "the tolerance; choose a larger tolerance"
-        )
+        return rounding_warning(t)
 
     @cached_property
     def rate_parameters(self) -> list[float]:
