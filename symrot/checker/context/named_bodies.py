@@ -93,7 +93,7 @@ def _judged(claim: Claim, named: NamedFormula, verdict: Verdict, stated: Context
 
 
 def _not_of_name(named: NamedFormula, verdict: Verdict) -> Verdict:
-    """Return ``verdict`` as "definition": the formula is for another body or point than the name of the quantity says."""
+    """Return ``verdict`` as "definition", since a quantity's name says another body or point than its formula."""
     reason = (
         f"the formula is the {verdict.recognised_as[0].name}; but the name {named.name} is for another body or point"
     )
