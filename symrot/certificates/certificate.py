@@ -175,7 +175,11 @@ def proven_statement(kernel: KernelUnderTest) -> Data:
 
 
 def _proven(kernel: KernelUnderTest) -> Data:
-    """Return the sections ``laws`` and ``readback`` of a kernel's certificate, with their proofs."""
+    """Return the sections of a kernel's certificate that hold proofs: ``laws`` and ``readback``.
+
+    ``laws`` has a proof of each law that the formulas obey; ``readback`` has, for each C function, the proof that it
+    computes the formulas. CertificateError is raised if a proof fails.
+    """
     known = {str(symbol): value for symbol, value in kernel.named} | dict(kernel.formulas.values())
     return {
         "laws": [_law(prove_law(kernel.name, law, known)) for law in kernel.laws],

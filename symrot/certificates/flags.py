@@ -158,9 +158,10 @@ class FlagEffect:
 
     @property
     def accepted(self) -> bool:
-        """Whether the proven error bounds hold with these flags: True unless ``holds`` is "nothing".
+        """Whether the flags keep the proven error bounds: True unless ``holds`` is "nothing".
 
-        With contraction they hold, except where a product is fused in one sum and rounded in another.
+        It is also True with contraction, although a bound may then fail for an output in which one product is fused
+        into a sum at one place and rounded at another; only the comparison of object code finds such outputs.
         """
         # if ``holds`` is "bounds", results may differ in bits
         return self.holds != NOTHING

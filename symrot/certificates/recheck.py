@@ -219,7 +219,10 @@ class Arithmetic:
 
 
 class AnyFunctions(Arithmetic):
-    """An arithmetic of exact fractions: functions have random values, and choices are means with random weights."""
+    """An arithmetic of exact fractions in which functions such as sine have random values.
+
+    A conditional ``a < b ? x : y`` is a mean of x and y, with a random weight that depends on a and b alone.
+    """
 
     def __init__(self):
         super().__init__()
@@ -852,7 +855,12 @@ class CReader(Reader):
         return Parameter(name, "value", 1, True)
 
     def loops(self):
-        """Read the loops over samples; return their form ("each sample", "spans" or "blocks") and their bodies."""
+        """Read the loops over samples; return a pair (form, list of the loops' bodies).
+
+        The form is "each sample" (one loop over all samples), "spans" (for each run of samples two loops, each for
+        some outputs) or "blocks" (for each run a loop with fast sine and cosine, and one that repeats it with <math.h>
+        if an angle is too large).
+        """
         if self.accept(INDEPENDENT):
             self.take(EACH_SAMPLE)
             bodies = [self.body()]

@@ -87,7 +87,10 @@ def _function(name: str) -> Callable[..., Residue]:
 
 RANDOM = {name: _function(name) for name in (*FUNCTIONS, "copysign")}
 RANDOM["sinc"] = lambda x: RANDOM["sin"](x) / x
-"""Random functions that stand for sine and others, by name; equal calls have equal values."""
+"""Name of a function such as ``"sin"`` -> the random function of residues by which formulas are evaluated instead.
+
+Calls with equal arguments have equal values. ``"sinc"`` is the random sine of x, divided by x.
+"""
 
 
 def exact(precision: str) -> Callable[[Fraction], Residue]:

@@ -69,7 +69,7 @@ ELLIPTIC_NOT_STATED = {"not stated": "errors of rounding, and of truncation belo
 WHOLE_STATE = {"rates": "the formulas of the rates, which symrot derives from Euler's equations for the whole state"}
 NOT_STATED = {"not stated": "errors of rounding and truncation"}
 EVALUATIONS = 32
-"""Number of boxes that are evaluated per output to bound rounding errors; more hardly lower the bound of a step."""
+"""Number of boxes evaluated per output to bound the rounding error of a step; more boxes hardly lower the bound."""
 
 
 @dataclass(frozen=True)
@@ -241,7 +241,11 @@ def bounds_of_step(
 
 
 def _require_intended(rates: Program) -> None:
-    """Raise InputError if a constant of the rates has a double that stands for another number, such as 1/3."""
+    """Raise InputError if the C text of the rates would be read with another constant than the rates have.
+
+    For example, the constant 0.3333333333333333 is refused: its double is that of 1/3, and reads as 1/3. The constants
+    1/3 and 0.3 are accepted.
+    """
     # the C text has the double alone, whose rounding error is bounded as that of the number for which it stands
     pending = [node for _, node in (*rates.temporaries, *rates.outputs)]
     while pending:
@@ -339,7 +343,10 @@ def _proof(step: str, rates: Program, method: Method, source: str, suffix: str) 
 
 
 def _require_arguments(file: str, source: str, name: str, signature: Signature, real: str) -> None:
-    """Raise CertificateError unless a C function and its batch have the arguments of a step in their order."""
+    """Raise CertificateError unless the C functions of a step have the arguments and sizes that ``signature`` lists.
+
+    There are two functions: ``name`` computes one sample, and ``{name}_batch`` n samples, with n as its first argument.
+    """
     one, batch = [], [Parameter("n", "size_t", 0, False)]
     for each in signature.arguments:
         is_input = each.role == "in"
@@ -357,9 +364,10 @@ def _require_arguments(file: str, source: str, name: str, signature: Signature, 
 def _degree(
     file: str, rates: Program, method: Method, places: Mapping[str, str], operations: Operations, point: int
 ) -> int:
-    """Return a bound of the degrees of the outputs, as rational functions of the inputs, computed at a random point.
+    """Compare the C function with the step's formula at one random point; return a bound of the outputs' degrees.
 
-    CertificateError is raised if an output of the C text differs there from the step's formula.
+    The degrees, as rational functions of the inputs, are counted while the values are computed. ``places`` maps each
+    input component, such as ``"x[0]"``, to its symbol. CertificateError is raised if an output differs at the point.
     """
     values = {symbol: Residue(digest_number(operations.digest(), point, symbol), 1) for symbol in places.values()}
     number = exact(operations.precision)

@@ -29,8 +29,9 @@ __all__ = ["verdict_on_approximation"]
 
 SIGN = re.compile(r"≈|≃|\\(?:approx|simeq)(?![A-Za-z])")
 MOST_POWER, MOST_LEFT_OUT = 8, 4
-"""The highest power of the small letter that is compared, and the number of powers above the degree of the right side
-among which the first omitted term is sought."""
+"""The highest power of the small letter, such as x in ``sin(x) ≈ x``, whose Taylor coefficients are compared; and the
+number of powers above the degree of a polynomial right side among which the first omitted term, here ``-x^3/6``, is
+sought."""
 
 
 def verdict_on_approximation(source: str) -> Verdict | None:
@@ -71,7 +72,9 @@ def _verdict(source: str) -> Verdict | None:
 
 
 class _Unknown(Exception):
-    """Exception raised if it cannot be decided whether two coefficients of Taylor series are equal."""
+    """Exception raised if comparing Taylor coefficients decides nothing: two of them cannot be compared, or all up to
+    the power MOST_POWER are equal although both formulas are not proven to be.
+    """
 
 
 def _agree(own: Expr, other: Expr) -> bool:
@@ -83,7 +86,9 @@ def _agree(own: Expr, other: Expr) -> bool:
 
 
 def _on_series(left: Expr, right: Expr, letter: Symbol) -> Verdict:
-    """Return the verdict on ``tan θ ≈ sin θ``, two formulas that are no polynomials in the small letter."""
+    """Return the verdict on ``tan θ ≈ sin θ``, two formulas that are no polynomials in the small letter; raise _Unknown
+    if comparing their Taylor coefficients decides nothing.
+    """
     if decide(left, right).verdict == "true":
         return Verdict("true", notes=("both sides are equal",))
     series = zip(_coefficients(left, letter), _coefficients(right, letter), strict=True)

@@ -29,13 +29,13 @@ from symrot.kinematics.rotations import elementary_rotation, vee
 __all__ = ["verdict_on_rates", "without_marks"]
 
 INERTIAL = {"", "I", "N", "s", "S", "i", "O", "E", "in", "fixed", "space", "inertial", "lab", "abs"}
-"""Marks of a frame that does not rotate; a derivative without a mark is the one seen from such a frame."""
+"""Names of a frame that does not rotate, as written at a derivative: s in ``(dA/dt)_s``; "" if none is written."""
 
 TURNING = {"B", "b", "body", "rot", "rotating", "r"}
-"""Marks of a rotating frame."""
+"""Names of a rotating frame, as written at a derivative: B in ``(dA/dt)_B``."""
 
 MARKED = "moving"
-"""The frame of ``d'A/dt`` and of a ring over A, which have no name."""
+"""Name given to the rotating frame of ``d'A/dt`` and of A with a ring above, which name no frame themselves."""
 
 TEXT = r"\{?\\(?:mathrm|text|textrm|mathcal|textit|rm)\s*\{?\s*(?P<{0}t>\w+'?)\s*\}*"
 LABEL = r"(?:_\s*(?:\{\s*(?P<{0}b>\w+'?)\s*\}|" + TEXT + r"|(?P<{0}w>\w)(?!\w)))"
@@ -62,7 +62,7 @@ LATEX = tuple(re.compile(pattern) for pattern in (
     r"\\d?frac\s*\{\s*" + D + r"\}\s*" + DT + r"\s*" + VECTOR,
     r"\\dot\s*\{\s*" + VECTOR + r"\s*\}",
 ))  # fmt: skip
-"""The derivatives of a vector by time in LaTeX; those of a marked frame come first."""
+"""Patterns of the time derivative of a vector in LaTeX: first those that show the frame, then those that do not."""
 
 PLAIN = tuple(re.compile(pattern) for pattern in (
     r"\(\s*d(?P<v>\w)\s*/\s*dt\s*\)\s*_\s*\{?(?P<lb>\w+'?)\}?",
@@ -71,7 +71,7 @@ PLAIN = tuple(re.compile(pattern) for pattern in (
     r"(?<![\w(])d(?P<v>\w)\s*/\s*dt(?!\w)",
     "(?P<v>\\w)\N{COMBINING DOT ABOVE}",
 ))  # fmt: skip
-"""The derivatives of a vector by time in plain text."""
+"""Patterns of the time derivative of a vector in plain text, in the same order: ``(dA/dt)_B`` before ``dA/dt``."""
 
 OMEGA = r"(?P<omega>\\(?:boldsymbol|mathbf|vec|bm)\s*(?:\{\s*\\\w+\s*\}|\\\w+)|\\[oO]mega|[ωΩ])\s*"
 MARK = r"\{?\s*(?:\\(?:mathcal|mathrm|text)\s*\{?)?\s*(?P<{0}>\w+'?)\s*\}*"
@@ -82,26 +82,32 @@ DIRECTIONS = (
     re.compile(OMEGA + r"_\s*\{\s*(?P<moving>\w+'?)\s*/\s*(?P<still>\w+'?)\s*\}"),
     re.compile(OMEGA + r"_(?P<moving>\w)/(?P<still>\w)"),
 )
-"""Angular velocities with the marks of two frames: the frame ``moving`` rotates relative to the frame ``still``."""
+"""Patterns of an angular velocity that names two frames, ``{}^N ω^B`` and ``ω_{B/N}``.
+
+It is the angular velocity of the frame in the group ``moving``, B, relative to the frame in the group ``still``, N.
+"""
 
 OPERATOR = re.compile(OPEN + r"\\d?frac\s*\{?\s*" + D + r"\}?\s*" + DT + CLOSE + LABEL.replace("{0}", "l"))
 
 NAMES = "uwshn"
-"""Letters that may stand for the two rates; letters that occur in the text are not used."""
+"""Letters that may replace the rates of a vector in two frames; the first two that the text does not use are taken."""
 
 
 @dataclass(frozen=True)
 class _Rate:
-    """The derivative of a vector by time in a text: its start and end there, the vector, and the mark of the frame."""
+    """A time derivative of a vector in a text: its start and end in the text, the vector, and the frame."""
 
     start: int
     end: int
     vector: str
-    frame: str
+    frame: str  # B for (dA/dt)_B, "" if no frame is written, MARKED for a ring above the vector
 
 
 def verdict_on_rates(source: str) -> Verdict | None:
-    """Return the verdict on an equation with the rates of one vector seen from two frames; None for other texts."""
+    """Return the verdict on an equation with the rates of one vector seen from two frames.
+
+    Return None for other texts, and for equations that cannot be read.
+    """
     typed, source = source, _with_operand(source)
     rates = list(_rates_in(source))
     frames = list(dict.fromkeys(rate.frame for rate in rates))
@@ -147,9 +153,9 @@ def verdict_on_rates(source: str) -> Verdict | None:
 
 
 def _with_operand(source: str) -> str:
-    """Return the text of an equation with the sign × for a letter x after ω.
+    """Return an equation with the sign × for a letter x between ω, or w, and a letter.
 
-    An equation between operators, ``(d/dt)_I = (d/dt)_B + ω ×``, is applied to a vector A.
+    Append a vector A to each ``(d/dt)_I`` and to the end of an equation between operators in LaTeX, which ends with ×.
     """
     source = re.sub(r"(?<=[wωΩ]) x (?=\w\b)", " × ", source)
     if not re.search(r"\\times\s*$", source):
@@ -158,10 +164,11 @@ def _with_operand(source: str) -> str:
 
 
 def _without_direction(source: str, still: str, moving: str) -> tuple[str, list[_Rate], int]:
-    """Return (text, rates, direction): the text with ω for the first ``{}^N ω^B`` or ``ω_{B/N}``, and its rates.
+    """Return (text, rates, direction), where the text has ω in place of one ``{}^N ω^B`` or ``ω_{B/N}``.
 
-    The direction is 1 if these marks say that ω is the angular velocity of ``moving`` relative to ``still``, -1 if they
-    say the opposite. Without such marks, the text is unchanged, and the direction is 0.
+    ``rates`` are the time derivatives in this text. The direction is 1 if the frames at ω say that it is the angular
+    velocity of ``moving`` relative to ``still``, and -1 for ``still`` relative to ``moving``. If no ω names these two
+    frames, the text is unchanged and the direction 0.
     """
     for pattern in DIRECTIONS:
         for match in pattern.finditer(source):
@@ -173,9 +180,9 @@ def _without_direction(source: str, still: str, moving: str) -> tuple[str, list[
 
 
 def without_marks(source: str) -> tuple[str, str]:
-    """Return (text, note): a text with ``dA/dt`` in place of ``(dA/dt)_s``, and a note for the user on the mark s.
+    """Return (text, note): a text with ``dA/dt`` in place of ``(dA/dt)_s``, and a note for the user on the frame s.
 
-    Return the text unchanged and "" if its derivatives have no such marks, or the marks of several frames.
+    Return the text unchanged and "" if no frame, or several frames, from INERTIAL and TURNING are written in it.
     """
     marked = [rate for rate in _rates_in(source) if rate.frame in {*INERTIAL, *TURNING} - {""}]
     if not marked or len({rate.frame for rate in marked}) != 1:
@@ -234,10 +241,10 @@ def _plain(vector: str) -> str:
 def _values(
     names: Mapping[str, str], still: str, moving: str, vector: str, angular: str, sign: int
 ) -> dict[Symbol, Any]:
-    """Return a map from symbols of components, such as ``v_x``, to formulas along the axes of the moving frame.
+    """Return {symbol: formula} for components along the axes of the moving frame, such as ``v_x`` of a vector v.
 
-    They are the components of the vector, of its rates as seen from the still and from the moving frame, and of
-    ``sign`` times the angular velocity.
+    The components are those of the vector, of its rates as seen from the still and from the moving frame (``names``:
+    frame -> name of the rate), and of ``sign`` times the angular velocity.
     """
     angles = [Function(f"angle_{number}", real=True)(time) for number in range(3)]
     turned = (

@@ -37,14 +37,14 @@ MOMENTS = (("A", "B", "C"), *((f"{letter}{index.format(1)}", f"{letter}{index.fo
            for letter in "IJ" for index in ("_{0}", "{0}", "_{0}{0}", "{0}{0}")),
            *((f"{letter}{mark}{'x' * n}", f"{letter}{mark}{'y' * n}", f"{letter}{mark}{'z' * n}")
            for letter in "IJ" for mark in ("_", "") for n in (1, 2)))  # fmt: skip
-"""Names of the three moments of inertia about perpendicular axes."""
+"""Triples of names for the moments of inertia about three perpendicular axes, such as ("A", "B", "C")."""
 
 CONDITION = (
     "it is a condition on its letters, which may hold for some of their values only: it is neither proven nor refuted"
 )
 
 SPIN = "omega_3"
-"""The spin of a top in known formulas."""
+"""Name that symrot's known formulas have for the spin of a top about its axis of symmetry."""
 
 PLATE = "the body is not a plane plate"
 
@@ -103,7 +103,7 @@ def _verdict(claim: Claim, sign: str, flipped: str, start: float) -> Verdict:
 def _on_least_spin(claim: Claim, sign: str) -> Verdict | None:
     """Return the verdict on an inequality for the least spin of an upright top: ``I_3^2 w_3^2 >= 4 m g l I_1``.
 
-    Return None for others.
+    Return None for any other inequality.
     """
     assert claim.relation is not None
     verdict = check_claim(claim)
@@ -142,7 +142,7 @@ def _letters(tree: Node) -> set[str]:
 def _on_moments(difference: Expr, strict: bool, flipped: str) -> Verdict | None:
     """Return the verdict on an inequality between the moments of inertia of a body, such as I_1 + I_2 >= I_3.
 
-    Return None for others.
+    Return None for any other inequality.
     """
     names = {symbol.name for symbol in difference.free_symbols}
     own = next((moments for moments in MOMENTS if names == {*moments}), None)

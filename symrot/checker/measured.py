@@ -20,13 +20,14 @@ __all__ = ["in_degrees", "with_units"]
 
 CIRCULAR = ("sin", "cos", "tan", "cot", "sec", "csc")
 DECIMAL, ROUNDED_WHOLE = r"\d+\.\d+(?:[eE][+-]?\d+)?", r"[1-9]\d*[1-9]"
-"""Decimal numbers, and whole numbers that may be rounded: 37, but not 40, whose count of digits is unclear."""
+"""Patterns of a decimal number, and of a whole number that may be rounded: 37, but not 40, which may be rounded to tens
+or to ones."""
 
 LONG_WHOLE = 3
 """The smallest number of digits of a whole number that may be a rounded rational value, as in 1 hp = 746 W."""
 
 TURN = 7
-"""An angle of at least this number, without pi, is probably in degrees: a full turn is 6.28 rad."""
+"""A number of at least this size, such as 30 in ``sin(30)``, is probably an angle in degrees: 2 pi is 6.28."""
 
 
 def with_units(claim: Claim, measured: Measured, decide: Callable[[Claim], Verdict]) -> Verdict:
@@ -67,9 +68,10 @@ def with_units(claim: Claim, measured: Measured, decide: Callable[[Claim], Verdi
 
 
 def _right_number(claim: Claim, sides: list[Node], factors: dict[str, Node], measured: Measured) -> dict[str, Any]:
-    """Return {"diagnosis": .., "repairs": ..} that correct the whole number on the right of a false ``2 m = 300 cm``.
+    """Return {"diagnosis": .., "repairs": ..} that correct the number on the right side: 200 for ``2 m = 300 cm``.
 
-    If no number is right there, the diagnosis has the code "none", and there are no repairs.
+    If the right side is not a whole number with a unit, or if no rational number makes the claim true, the diagnosis
+    has the code "none", and there are no repairs.
     """
     # sides: with names in place of units; factors: name of a unit -> its factor to SI units
     left, right = sides
@@ -142,19 +144,25 @@ def _to_digits(worked: Claim, measured: Measured, unit: str, is_right: bool) -> 
     )
 
 
-def _with_number(source: str, digits: str, unit: str, right: str, is_right: bool) -> tuple[Repair, ...]:
-    """Return (repair,): ``source`` with ``right`` for the number ``digits`` before ``unit``, the last one if
-    ``is_right``; () if it does not occur.
+def _with_number(source: str, digits: str, unit: str, correct: str, on_right_side: bool) -> tuple[Repair, ...]:
+    """Return (repair,): the text ``source`` with the number ``correct`` in place of ``digits`` before ``unit``.
+
+    If the digits occur several times, replace the last ones if the wrong number is on the right side of the equation,
+    else the first. Return () if they do not occur.
     """
     places = [*re.finditer(rf"(?<![\w.^]){re.escape(digits)}(?=[ *·⋅]*{re.escape(unit)})", source)]
     if not places:
         return ()
-    start, end = places[-1 if is_right else 0].span()  # is_right: the number is on the right side
-    return (Repair((source[:start] + right + source[end:]).strip(), "digits", 1.0),)
+    start, end = places[-1 if on_right_side else 0].span()
+    return (Repair((source[:start] + correct + source[end:]).strip(), "digits", 1.0),)
 
 
 def _decimal(tree: Node, source: str, pattern: str = DECIMAL) -> tuple[str, str]:
-    """Return (digits, unit) of a number times a unit: ("157.08", "unit_1") for 157.08 rad/s; else ("", "")."""
+    """Return (digits, name of the unit) for a number times a unit; ("", "") for any other tree.
+
+    157.08 rad/s gives ("157.08", "unit_1") if the claim has the name unit_1 in place of rad/s. ``pattern`` must match
+    all digits.
+    """
     if tree.kind != "product" or len(tree.args) != 2 or [part.kind for part in tree.args] != ["number", "name"]:
         return "", ""
     first, unit = tree.args
@@ -163,8 +171,10 @@ def _decimal(tree: Node, source: str, pattern: str = DECIMAL) -> tuple[str, str]
 
 
 def in_degrees(claim: Claim, verdict: Verdict, decide: Callable[[Claim], Verdict]) -> Verdict:
-    """Return ``verdict`` with a remark, or with a repair if degrees make it true, for a claim with angles like 30 in
-    ``sin(30)``.
+    """Return ``verdict`` with a note on the verdict in degrees, for a claim with angles such as 30 in ``sin(30)``.
+
+    If the claim is false in radians and true in degrees, return the verdict with a repair instead. Return it unchanged
+    for claims without such angles, and if the claim in degrees cannot be decided.
     """
     if claim.relation is None:
         return verdict

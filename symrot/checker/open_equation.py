@@ -123,7 +123,11 @@ def _roots(difference: Expr, symbol: Symbol, name: str) -> str | None:
 
 
 def _irrational_roots(difference: Expr, symbol: Symbol, name: str) -> str | None:
-    """Return what :func:`_roots` returns, for a polynomial of degree 1 or 2 such as ``x^2 - pi``."""
+    """Return the real zeros of a polynomial such as ``x^2 - pi`` as text, ``"x == -sqrt(pi) and x == sqrt(pi)"``.
+
+    Return None unless ``difference`` is a polynomial of degree 1 or 2 in ``symbol`` alone, it is known which of its
+    zeros are real, and at least one is.
+    """
     if not difference.is_polynomial(symbol) or difference.free_symbols != {symbol}:
         return None
     polynomial = Poly(difference, symbol)
@@ -147,7 +151,10 @@ def _is_polynomial(claim: Claim, letter: Node) -> bool:
 
 
 def _exponents(side: Node, letter: Node) -> Sequence[Any] | None:
-    """Return the power of a letter in each term of a sum: [2, 1, 0] for ``x^2 + 3 x + 5``; None for others."""
+    """Return the power of a letter in each term of a sum: [2, 1, 0] for ``x^2 + 3 x + 5``.
+
+    Return None if the letter x occurs in a term in any other way, as in ``sin(x)``, ``1/x`` or ``x*x``.
+    """
     exponents = []
     for term in side.args if side.kind == "sum" else (side,):
         bare = term.args[0] if term.kind == "neg" else term

@@ -63,6 +63,8 @@ class EnsembleMember(MotionSamples):
         Sample times, s.
     method, message : str
         The method, and the reason why the motion stopped early, or an empty text.
+    warnings : tuple of str
+        Warnings about the scene and about the accuracy of this motion.
     tolerance : float
         Tolerance with which the motion was computed.
 
@@ -78,7 +80,7 @@ class EnsembleMember(MotionSamples):
         self._ensemble, self._number = ensemble, number
         self.t = ensemble.t if ensemble.t.ndim == 1 else ensemble.t[number]
         self.method, self.message = ensemble.methods[number], ensemble.messages[number]
-        self.tolerance = ensemble.tolerance
+        self.tolerance, self.warnings = ensemble.tolerance, ensemble.warnings[number]
 
     def __len__(self) -> int:
         return len(self.t)
@@ -139,6 +141,9 @@ class Ensemble(MotionSamples):
         For each motion that stopped early, the time at which it stopped and the reason; empty for the other motions.
     methods : n texts
         The name of the method by which each motion was computed.
+    warnings : n tuples of str
+        For each motion, the warnings that its trajectory would have: about the scene, such as a hole that may reach out
+        of the body, and about the accuracy of the motion. Usually empty.
     stats : EnsembleStats
         Steps, evaluations and time.
     tolerance : float
@@ -163,6 +168,8 @@ class Ensemble(MotionSamples):
         self._omega, self._quaternion = followed.omega, followed.quaternion
         self.methods, self.messages = followed.methods, followed.messages
         self.status = np.array([-1 if message else 0 for message in followed.messages], dtype=np.int64)
+        of_scene = self.scene.warnings
+        self.warnings = tuple([(*of_scene, *own) for own in followed.warnings])
         self.stats = EnsembleStats(followed.steps, followed.evaluations, seconds)
         self.sensitivities = sensitivities
 
@@ -179,6 +186,8 @@ class Ensemble(MotionSamples):
     def __repr__(self) -> str:
         broken = int((self.status != 0).sum())
         ending = f", {broken} stopped early" if broken else ""
+        doubtful = sum(1 for own in self.warnings if own)
+        ending += f", {doubtful} with warnings" if doubtful else ""
         count = self.t.shape[-1]
         return f"<Ensemble of {self.scene.name}: {len(self)} trajectories, {count} samples, {self.method}{ending}>"
 

@@ -119,6 +119,7 @@ class Outcome(NamedTuple):
     steps: Integers
     evaluations: Integers
     messages: tuple[str, ...]  # the reason why a motion stopped early, or an empty text
+    warnings: tuple[tuple[str, ...], ...] = ()  # of each motion; empty if no motion has any
 
 
 class Lanes:

@@ -32,6 +32,7 @@ from symrot.propagation.motions.setup import python_rates
 from symrot.propagation.steppers import dop853, taylor
 from symrot.propagation.steppers.integration_stopped import IntegrationStopped
 from symrot.propagation.steppers.smoothness import non_smooth_torque
+from symrot.propagation.steppers.stats import Stats, rounding_warning
 from symrot.propagation.steppers.stepping import NOT_FINITE_SENTENCE, Floats
 from symrot.propagation.trajectory import Trajectory
 
@@ -50,6 +51,7 @@ class Followed(NamedTuple):
     quaternion: Floats | None  # (n, m, 4)
     methods: tuple[str, ...]
     messages: tuple[str, ...]  # reason why a motion stopped early, or empty
+    warnings: tuple[tuple[str, ...], ...]  # sentences about the accuracy of each motion
     steps: Integers
     evaluations: Integers
 
@@ -102,16 +104,17 @@ def _together(parts: Sequence[Followed], groups: Sequence[Integers]) -> Followed
     def joined(arrays: Sequence[Any]) -> Any:
         return np.concatenate(arrays)[order]
 
-    def texts(rows: Sequence[tuple[str, ...]]) -> tuple[str, ...]:
-        flat = [text for row in rows for text in row]
+    def in_order(rows: Sequence[tuple[Any, ...]]) -> tuple[Any, ...]:
+        flat = [each for row in rows for each in row]
         return tuple(flat[place] for place in order.tolist())
 
     quaternions = [part.quaternion for part in parts]  # a torque needs the attitude or not, whatever its constants
     return Followed(
         joined([part.omega for part in parts]),
         None if any(each is None for each in quaternions) else joined(quaternions),
-        texts([part.methods for part in parts]),
-        texts([part.messages for part in parts]),
+        in_order([part.methods for part in parts]),
+        in_order([part.messages for part in parts]),
+        in_order([part.warnings for part in parts]),
         joined([part.steps for part in parts]),
         joined([part.evaluations for part in parts]),
     )
@@ -137,12 +140,13 @@ def _follow(problem: Problem, method: str, rows: Integers) -> Followed:
     omega = np.empty((count, samples, 3))
     quaternion = np.empty((count, samples, 4)) if attitude else None
     methods, messages = ["exact"] * count, [""] * count
+    warnings: list[tuple[str, ...]] = [()] * count
     steps, evaluations = np.zeros(count, dtype=np.int64), np.zeros(count, dtype=np.int64)
     for each in solved:
         follow_exact(problem.variation, each, problem.times, problem.t0, omega, quaternion, problem.workers)
     if stepped and problem.plan.switches:
         alone = _switched(problem, method, stepped, omega, quaternion)
-        methods, messages = list(alone.methods), list(alone.messages)
+        methods, messages, warnings = list(alone.methods), list(alone.messages), list(alone.warnings)
         steps, evaluations = alone.steps, alone.evaluations
     elif stepped:
         chosen = method if method != "auto" else _stepping_method(problem)
@@ -151,20 +155,22 @@ def _follow(problem: Problem, method: str, rows: Integers) -> Followed:
         stepper.read(outcome.states, omega, quaternion)
         for place, i in enumerate(stepped):
             methods[i], messages[i] = chosen, outcome.messages[place]
+            warnings[i] = outcome.warnings[place] if outcome.warnings else ()
         steps[stepped], evaluations[stepped] = outcome.steps, outcome.evaluations
-    return Followed(omega, quaternion, tuple(methods), tuple(messages), steps, evaluations)
+    return Followed(omega, quaternion, tuple(methods), tuple(messages), tuple(warnings), steps, evaluations)
 
 
 def _switched(
     problem: Problem, method: str, stepped: Sequence[int], omega: Floats, quaternion: Floats | None
 ) -> Followed:
-    """Compute motions under torques with jumps or kinks one by one, and return methods, messages and costs.
+    """Compute motions under torques with jumps or kinks one by one, and return methods, messages, warnings and costs.
 
     The samples are written into ``omega`` and ``quaternion``.
     """
     from symrot.propagation.propagate import propagator
 
-    count, messages, methods = len(stepped), list[str](), list[str]()
+    count, messages, methods, warnings = len(stepped), list[str](), list[str](), list[tuple[str, ...]]()
+    of_scene = len(problem.variation.scene.warnings)
     steps, evaluations = np.zeros(count, dtype=np.int64), np.zeros(count, dtype=np.int64)
     for k, i in enumerate(stepped):
         times, alone = problem.times_of(i), propagator(problem.variation.scene_of(i), method, problem.tolerance)
@@ -184,7 +190,8 @@ def _switched(
             steps[k], evaluations[k] = trajectory.stats.accepted, trajectory.stats.evaluations
         messages.append(message)
         methods.append(alone.method)
-    return Followed(omega, quaternion, tuple(methods), tuple(messages), steps, evaluations)
+        warnings.append(() if trajectory is None else trajectory.warnings[of_scene:])
+    return Followed(omega, quaternion, tuple(methods), tuple(messages), tuple(warnings), steps, evaluations)
 
 
 def _solved(problem: Problem, method: str) -> list[Solved]:
@@ -289,22 +296,28 @@ class _Stepped:
             needed |= names(node) if name in needed else set()
         return tuple([(name, node) for name, node in parameters if name in needed])
 
-    def one_by_one(self, integrate: Callable[[int, Floats], tuple[Floats, Any]]) -> lanes.Outcome:
+    def one_by_one(self, integrate: Callable[[int, Floats], tuple[Floats, Stats]]) -> lanes.Outcome:
         """Integrate all trajectories one after the other; ``integrate(k, times)`` returns states and cost of one."""
         samples = self.times.shape[-1]
         states = np.full((len(self.chosen), samples, len(self.plan.states)), np.nan)
         steps, evaluations = (np.zeros(len(self.chosen), dtype=np.int64) for _ in range(2))
-        messages = []
+        messages, warnings = list[str](), list[tuple[str, ...]]()
         for k, i in enumerate(self.chosen):
+            times, message, stats = self.on_clock(self.problem.times_of(i)), "", None
             try:
-                states[k], stats = integrate(k, self.on_clock(self.problem.times_of(i)))
-                steps[k], evaluations[k] = stats.accepted, stats.evaluations
-                messages.append("")
+                states[k], stats = integrate(k, times)
             except IntegrationStopped as error:
-                messages.append(str(error.later(self.epoch)))
+                message = str(error.later(self.epoch))
+                if error.samples is not None:
+                    states[k][error.samples.numbers], stats = error.samples.states, error.samples.stats
             except PropagationError as error:
-                messages.append(str(error))
-        return lanes.Outcome(states, steps, evaluations, tuple(messages))
+                message = str(error)
+            messages.append(message)
+            warnings.append(())
+            if stats is not None:
+                steps[k], evaluations[k] = stats.accepted, stats.evaluations
+                warnings[k] = tuple(map(rounding_warning, stats.later(self.epoch).rounded_beyond))
+        return lanes.Outcome(states, steps, evaluations, tuple(messages), tuple(warnings))
 
 
 def _taylor(stepped: _Stepped, method: str) -> lanes.Outcome:

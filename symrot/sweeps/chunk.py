@@ -20,13 +20,16 @@ from symrot.sweeps.design import Design, Draws
 from symrot.sweeps.outputs import SweepOutput, evaluate, sample_times
 from symrot.sweeps.targets import OMEGA, Content, Path, constants_of
 
-__all__ = ["COMPLETE", "IMPOSSIBLE", "STOPPED", "Chunk", "Job", "compute", "prepared"]
+__all__ = ["COMPLETE", "IMPOSSIBLE", "STOPPED", "WARNED", "Chunk", "Job", "compute", "prepared"]
 
 Floats = NDArray[np.float64]
 Rows = NDArray[np.intp]
 
 COMPLETE, STOPPED, IMPOSSIBLE = 0, -1, -2
 """Status of a trajectory: it reached its last time; it stopped early; no body or motion has its values."""
+
+WARNED = "warning: "
+"""Beginning of the message of a trajectory that is complete, but whose accuracy is in doubt."""
 
 MOST_READINGS = 4096  # scenes of distinct values that a process remembers
 
@@ -56,7 +59,7 @@ class Chunk:
     draws: Draws
     outputs: dict[str, Floats]  # (n, m) or (n,) by name
     status: NDArray[np.int8]  # (n,)
-    messages: dict[int, str]  # reason by row, for each trajectory that is not complete
+    messages: dict[int, str]  # by row: the reason why a trajectory is not complete, or a warning about its accuracy
 
 
 @dataclass
@@ -214,9 +217,10 @@ def _propagate(
     for name, value in values.items():
         outputs[name][rows] = value
     status[rows] = np.where(ensemble.status == 0, COMPLETE, STOPPED)
-    for place in np.flatnonzero(ensemble.status).tolist():
-        # a trajectory that stopped early
-        messages[int(rows[place])] = ensemble.messages[place]
+    of_scene = len(ensemble.scene.warnings)
+    for row, message, warnings in zip(rows.tolist(), ensemble.messages, ensemble.warnings, strict=True):
+        if message or len(warnings) > of_scene:
+            messages[row] = message or WARNED + "; ".join(warnings[of_scene:])
     for name, value in values.items():
         for row in rows[np.isinf(value).reshape(len(rows), -1).any(axis=1)].tolist():
             # an infinity is not a value: all outputs of this trajectory are missing

@@ -24,7 +24,7 @@ NOT_COMPUTED = -128
 """Status of a trajectory whose chunk has not been computed yet."""
 LABELS = {
     STATUS: {"long_name": "0 complete, -1 stopped early, -2 no motion has these values, -128 not computed yet"},
-    MESSAGE: {"long_name": "why a trajectory is not complete"},
+    MESSAGE: {"long_name": "why a trajectory is not complete, or a warning about its accuracy"},
 }
 """Attributes of the arrays that every sweep has."""
 

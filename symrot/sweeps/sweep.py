@@ -18,7 +18,7 @@ from symrot.propagation.sensitivities.variation import structure_of
 from symrot.propagation.steppers.taylor import refusal
 from symrot.scene.scene import Scene, SceneSource, load_scene
 from symrot.scene.tables import read_tolerance
-from symrot.sweeps.chunk import IMPOSSIBLE, STOPPED, Chunk, Job, prepared
+from symrot.sweeps.chunk import COMPLETE, IMPOSSIBLE, STOPPED, WARNED, Chunk, Job, prepared
 from symrot.sweeps.cluster import run_on_cluster
 from symrot.sweeps.design import Design, read_design
 from symrot.sweeps.layout import MESSAGE, STATUS, TIME, Header, Store, data_frame, header_of
@@ -63,7 +63,8 @@ class Sweep:
     reasons : list of (int, str)
         Index and reason for at most three trajectories, the first ones that stopped early or were impossible.
     warnings : tuple of str
-        Warnings about the scene, such as a hole that may reach out of the body.
+        Warnings about the scene, such as a hole that may reach out of the body, and one sentence with the number of
+        complete trajectories whose ``message`` warns of their accuracy.
 
     Examples
     --------
@@ -399,11 +400,18 @@ def _content(scene: Scene) -> Content | None:
 
 
 def _result(store: Store, path: Path | None, warnings: tuple[str, ...]) -> Sweep:
-    stopped, impossible, reasons = 0, 0, list[tuple[int, str]]()
+    stopped, impossible, reasons, warned = 0, 0, list[tuple[int, str]](), list[tuple[int, str]]()
     count = store.header.count
     for start in range(0, count, BLOCK):
         status: NDArray[Any] = store.read(STATUS, start, min(start + BLOCK, count))
         stopped, impossible = stopped + int((status == STOPPED).sum()), impossible + int((status == IMPOSSIBLE).sum())
         for row in np.flatnonzero(status)[: SHOWN_REASONS - len(reasons)].tolist():
             reasons.append((start + row, str(store.read(MESSAGE, start + row, start + row + 1)[0])))
+        messages = store.read(MESSAGE, start, min(start + BLOCK, count))
+        with_text = np.flatnonzero((messages != "") & (status == COMPLETE)).tolist()
+        warned += [(start + row, str(messages[row])) for row in with_text]
+    if warned:
+        row, text = warned[0]
+        doubt = f"{len(warned)} of {count} trajectories have a warning, for example trajectory {row}: "
+        warnings = (*warnings, doubt + text.removeprefix(WARNED))
     return Sweep(path, count, stopped, impossible, reasons, store, warnings)

@@ -378,6 +378,31 @@ def test_a_failed_trajectory_says_so():
         assert "1 stopped early" in repr(found)
 
 
+@pytest.mark.parametrize(
+    ("method", "switch"),
+    [("taylor", ""), ("dop853", ""), ("scipy:DOP853", ""), ("taylor", " + step(t)/1000 - step(t)/1000")],
+)
+def test_a_motion_carries_the_warnings_of_its_trajectory(method, switch):
+    """sin(t^2) is rounded by more than the tolerance late in the motion, of which ensembles said nothing."""
+    torque = [{"kind": "expression", "torque": ["0", "0", f"k*sin(t**2){switch}"], "parameters": {"k": "1"}}]
+    made, t = scene(body={"principal": [1, 1, 1]}, initial={"omega": [0, 0, 0]}, torque=torque), np.linspace(0, 9, 10)
+    every = symrot.propagate_ensemble(made, parameters={"k": [1.0, 0.5]}, t=t, method=method, tolerance=1e-15)
+    assert every[0].warnings == every.warnings[0] == symrot.propagator(made, method, 1e-15)(t).warnings
+    assert "the rounding of the torque, a formula of the time" in every.warnings[1][0]
+    assert repr(every).endswith(", 2 with warnings>")
+    rough = symrot.propagate_ensemble(made, parameters={"k": [1.0, 0.5]}, t=t, method=method, tolerance=1e-12)
+    assert rough.warnings == ((), ()) and "warnings" not in repr(rough)
+
+
+def test_the_samples_before_a_stop_stay():
+    """Motions computed one by one had NaN at all times if they stopped early."""
+    torque = [{"kind": "expression", "torque": ["0", "0", "5/2*omega_3**2"]}]
+    for method in ("taylor", "dop853", "scipy:DOP853"):
+        found = symrot.propagate_ensemble(scene(torque=torque), omega=[[0, 0, 1.0]], t=[0, 0.1, 3.0], method=method)
+        assert found.status.tolist() == [-1] and found.stats.steps[0] > 0
+        assert not np.isnan(found.omega[0, :2]).any() and np.isnan(found.omega[0, 2]).all()
+
+
 def test_a_propagator_gives_scene_and_tolerance():
     own = symrot.propagator(scene(), tolerance=1e-5)
     found = symrot.propagate_ensemble(own, **states(2), method="taylor")

@@ -2,6 +2,7 @@
 
 import json
 import os
+import shutil
 import subprocess
 import sys
 import time
@@ -373,3 +374,40 @@ def test_statistics_of_values_that_another_process_removed_are_not_stored(tmp_pa
     assert means and all(np.array_equal(after[name].values, values.values) for name, values in means.items())
     with pytest.raises(InputError, match="kept only its statistics"):
         store.finish(wrong, "")
+
+
+@pytest.mark.parametrize("name", NAMES)
+def test_a_folder_that_was_begun_again_with_another_seed_takes_no_chunk_of_the_old_sweep(tmp_path, name):
+    path = tmp_path / name
+    old = symrot.sweep("t_handle", {"omega_1": "normal(0, 1)"}, count=8, seed=1, path=path, workers=1, chunk=4)
+    chunk = Chunk(0, 4, Draws(np.zeros((4, 1)), None), {"omega@end": np.zeros((4, 4))}, np.zeros(4, np.int8), {})
+    shutil.rmtree(path)
+    new = symrot.sweep("t_handle", {"omega_1": "normal(0, 1)"}, count=8, seed=2, path=path, workers=1, chunk=4)
+    before = new.array("omega_1@end")
+    with pytest.raises(InputError, match="got the results of a sweep with a different seed; choose another name"):
+        old._store.write(chunk)
+    with pytest.raises(InputError, match="different seed"):
+        old._store.finish([], "")
+    assert np.array_equal(new.array("omega_1@end"), before)
+
+
+@pytest.mark.parametrize("name", NAMES)
+def test_a_folder_that_was_begun_again_with_other_chunks_takes_none_of_the_old_ones(tmp_path, name):
+    path = tmp_path / name
+    old = sweep(path=path)
+    shutil.rmtree(path)
+    sweep(path=path, chunk=old._store.header.rows + 1)
+    with pytest.raises(InputError, match="got other chunks, because the sweep was begun again"):
+        old._store.finish([], "")
+
+
+@pytest.mark.parametrize("name", NAMES)
+def test_two_clients_that_create_one_folder_at_once_share_it(whole, tmp_path, name, monkeypatch):
+    """The second client finds no folder, and when its own one is complete, the folder of the first one exists."""
+    path, exists = tmp_path / name, Path.exists
+    sweep(path=path)
+    answers = iter([False])
+    monkeypatch.setattr(Path, "exists", lambda self: next(answers, exists(self)) if self == path else exists(self))
+    second = sweep(path=path)
+    assert np.array_equal(second.array("omega_1"), whole.omega_1.values)
+    assert [each.name for each in tmp_path.iterdir()] == [name]

@@ -109,6 +109,19 @@ def test_a_trajectory_without_a_body_keeps_its_row_and_its_reason(vary, reason):
         assert np.array_equal(data.omega_1[1], alone.omega_1[0])
 
 
+def test_a_trajectory_whose_accuracy_is_in_doubt_says_so_in_its_message():
+    torque = [{"kind": "expression", "torque": ["0", "0", "k*sin(t**2)"], "parameters": {"k": 1}}]
+    made = {"schema": 1, "body": {"principal": [1, 1, 1]}, "torque": torque, "initial": {"omega": [0, 0, 0]}}
+    made["span"] = {"t": [0, 9], "samples": 2}
+    options = {"t": [0, 9], "outputs": "omega_3@end", "tolerance": 1e-15, "workers": 1}
+    result = symrot.sweep(made, {"k": [0.0, 1.0]}, **options)
+    assert result.stopped == result.impossible == 0
+    quiet, text = result.array("message")
+    assert quiet == "" and text.startswith("warning: beyond t = ")
+    expected = "1 of 2 trajectories have a warning, for example trajectory 1: " + text.removeprefix("warning: ")
+    assert result.warnings == (expected,)
+
+
 @pytest.mark.filterwarnings("error")
 def test_a_trajectory_whose_output_overflows_has_no_value():
     """An infinite energy made percentiles NaN and lost the sweep in a histogram."""

@@ -31,7 +31,10 @@ _BINDING = {
 _PREFIXES: Mapping[str, Callable[[Any], Any]] = {"-": operator.neg, "!": lambda x: int(not x), "~": operator.invert}
 _STEPS = {"++": 1, "--": -1}
 _LETTERS = {"r": REAL, "i": INT}
-"""Letters for types in the signature of a function that replaces one of the C text; other letters mean any type."""
+"""Letter -> C type, in the signature of a Python function that replaces a C function; other letters mean any type.
+
+The signature ``"rri"`` means: a real result, a real and an integer argument. :class:`Machine` takes the replacements.
+"""
 _ASSIGNMENTS = {"=", "+=", "-=", "*=", "/=", "<<="}
 _OPERATIONS: Mapping[str, Callable[[Any, Any], Any]] = {
     "+": operator.add, "-": operator.sub, "*": operator.mul, "/": operator.truediv, "<": operator.lt, ">": operator.gt,
@@ -332,7 +335,10 @@ class Expressions(Reader):
 
 
 def _boxed(run: Run) -> Run:
-    """Return a place that holds the value of an expression."""
+    """Return the compiled address of a temporary variable that holds the value computed by ``run``.
+
+    A call of the returned function gives a pair ([value], 0): a list, and the index of the value in the list.
+    """
     return lambda f: ([run(f)], 0)
 
 

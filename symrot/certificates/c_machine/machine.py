@@ -21,18 +21,19 @@ _FAULTS = (ArithmeticError, AttributeError, IndexError, RecursionError, TypeErro
 
 
 class Machine(Statements):
-    """The functions of a C text, which :meth:`call` runs.
+    """The functions of a C text, which :meth:`call` runs on numbers of any one kind, such as decimals of 60 digits.
 
     Parameters
     ----------
     text : str
         The C text.
     number : callable
-        Converts a Fraction, the exact value of a constant, to the kind of number.
+        Converts a Fraction, the exact value of a ``double`` constant, to a number of that kind.
     own : mapping of str to (str, callable)
-        Functions that replace those of the text or of ``<math.h>``, by name: letters for the types of the result and
-        of each argument ("r" a number, "i" an integer, others any type), and the function. If the text declares the
-        function, its declaration counts instead of the letters. A pointer is passed as a pair (list, index).
+        Python functions that replace functions of the text or of ``<math.h>``: name -> (types, function). The types
+        are a letter for the result, then one for each argument: "r" a number, "i" an integer, others any type. If the
+        text declares the function, the declaration counts instead of the letters. A pointer is passed as a pair
+        (list, index).
 
     Raises
     ------

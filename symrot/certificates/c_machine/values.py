@@ -1,7 +1,8 @@
-"""Types and compiled expressions of the C that the machine runs.
+"""Types and compiled expressions of the C text that a :class:`Machine` (machine.py) runs in Python.
 
-A variable is a place ``(container, index)``, where the container is a list: an array, the fields of a structure, or the
-variables of a function. A pointer is such a place.
+The address of a variable, and so a pointer, is a pair ``(container, index)``, called a place. The container is a list:
+an array, the fields of a structure, or the variables of a function (its frame). A compiled expression is a Python
+function of the frame.
 """
 
 from collections.abc import Callable, Sequence
@@ -50,7 +51,10 @@ class Function(NamedTuple):
 
 
 class Value(NamedTuple):
-    """A compiled expression: its type, the function that computes its value and, for a variable, that of its place."""
+    """A compiled expression: its C type and the function ``run`` that computes its value from the frame.
+
+    For a variable, the function ``place`` computes its address, a pair (container, index); otherwise ``place`` is None.
+    """
 
     type: Type
     run: Run
@@ -58,7 +62,7 @@ class Value(NamedTuple):
 
 
 class Return(Exception):
-    """Jump out of a function; its argument is the result."""
+    """Raised by a ``return`` statement to leave the C function; the exception's argument is the function's result."""
 
 
 def called(function: Function, arguments: Sequence[Any]) -> Any:

@@ -23,7 +23,10 @@ __all__ = [
 ]
 
 RULES = "rotation"
-"""The file of definitions and rules that all others require; it comes with symrot and is not printed."""
+"""Name of the Coq file of definitions and lemmas about rotations that all printed Coq files require.
+
+The file comes with symrot, written by hand.
+"""
 
 ASSUMPTIONS = "assumptions"
 """The file that makes Coq print the axioms on which the theorems rest."""

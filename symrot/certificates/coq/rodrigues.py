@@ -44,7 +44,10 @@ def _norm(parameters: tuple[str, ...], at: str = "") -> str:
 
 
 def _positive(parameters: tuple[str, ...], at: str = "") -> str:
-    """Return a Coq tactic: the formula that :func:`_norm` writes for the same arguments is positive."""
+    """Return the text of a Coq tactic that proves that 1 plus the squared ``parameters`` is positive, or not zero.
+
+    ``at`` is as for :func:`_norm`, which writes that sum.
+    """
     return "(" + "; ".join(f"pose proof (pow2_ge_0 ({each}{at}))" for each in parameters) + "; lra)"
 
 

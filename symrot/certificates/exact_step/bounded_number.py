@@ -1,4 +1,4 @@
-"""Numbers with bounds of their errors, on which a machine for C runs a program: each stands for a set of inputs.
+"""Numbers with bounds of their errors, on which a C program is run once for a whole set of inputs, such as a box.
 
 A number is an interval that contains the exact result of all operations so far, for every input of the set, with two
 bounds of the difference between the computed and the exact result: an absolute and a relative one.
@@ -21,7 +21,10 @@ _GROW = 1 + 2.0**-40  # more than the rounding errors of a computed bound
 
 
 class UndecidedError(Exception):
-    """Raised for a comparison, or another decision, whose result may differ between inputs of the set."""
+    """Raised for a decision of the C program, such as a comparison, that may differ between inputs of the box.
+
+    Code that bounds errors then divides the box. It is also raised where no bound is known, such as near 0 for an agm.
+    """
 
 
 def _down(x: float) -> float:
@@ -43,7 +46,7 @@ def _known(x: float) -> float:
 
 
 class Bounded:
-    """The result of one operation for all inputs of a set: an interval of exact values, and bounds of their errors.
+    """The result of one operation for all inputs of a set: an interval of exact values, and bounds of the errors.
 
     For instance, the product of 3 and the doubles from 1 to 2 has the interval from 3 to 6, an error of at most 6*2^-53
     and a relative error of at most 2^-53.
@@ -138,7 +141,7 @@ class Bounded:
         return _inexact(Bounded(_down(min(ends)), _up(max(ends)), error * _GROW, relative * _GROW), unit)
 
     def root(self, unit: float) -> "Bounded":
-        """Return the square root of a number that is not negative."""
+        """Return the square root of a number that is not negative, rounded with the relative error ``unit``."""
         if self.is_exact and self.low == 0:
             return self
         low, high = max(self.low, 0.0), max(self.high, 0.0)

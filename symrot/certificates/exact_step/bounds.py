@@ -2,9 +2,9 @@
 
 The C text runs on numbers with bounds of their errors (bounded_number.py), once for each part of the box. In a part
 no component of omega changes its sign, and the phase of the elliptic functions is in one of 64 equal ranges.
-Operations on sums of two doubles have the relative errors of functions.py; every operation on doubles, which makes
-nearly all of the error, is bounded where the C text has it. Some intervals are cut to the known range of the exact
-value, such as 0 <= m <= 1 for the modulus m.
+Nearly all of the error comes from single operations on doubles, and each of them adds its rounding error. Operations on
+sums of two doubles add the relative errors that functions.py states. Some intervals are cut to the known range of the
+exact value, such as 0 <= m <= 1 for the modulus m.
 
 Bounds exist where the modulus m is below 0.7, that is not near the rotation about the middle axis. There the series
 in the nome q are cut after q^15, which makes an error below 40 q^16 in the elliptic functions.
@@ -47,7 +47,10 @@ SMALL_MODULUS = 0.7
 
 
 class _Context:
-    """The machine that runs the C text of a free body, with facts about the part of the box for which it runs."""
+    """The C text of a free body, run in Python on one part of the box of initial states and step sizes after another.
+
+    ``prepare`` computes the constants of the motions from a part of the box, and ``after`` the states after a step.
+    """
 
     def __init__(self, source: str, prefix: str) -> None:
         self.scale = 1.0  # the power of two by which omega is divided
@@ -147,7 +150,12 @@ class _Context:
     def _turn(
         self, phase: Place, slope: Bounded, count: int, t: Place, whole: Place, sine: Place, cosine: Place
     ) -> None:
-        """Store sine and cosine of a phase, as the function ``turn`` of the C text does."""
+        """Store sine and cosine of ``rate*t + start``, as the C function ``turn`` does, with bounds of their errors.
+
+        ``phase`` points to rate and start, each a sum of two doubles, in revolutions. ``count`` pairs are stored, all
+        equal, for the interval of times at ``t``. ``slope``, a factor of ``whole``, must be 0, else InputError is
+        raised, as for steps of too many revolutions; ``whole`` is not used.
+        """
         values, first = phase
         rate, start = pair_total([values[first], values[first + 1]]), pair_total([values[first + 2], values[first + 3]])
         size = t[0][t[1]]
@@ -174,7 +182,11 @@ class _Context:
     # --- runs ---------------------------------------------------------------------------------------------------------
 
     def prepare(self, moments: list[float], omega: list[Bounded]) -> None:
-        """Compute the constants of the motions of a part of the box."""
+        """Compute the constants of the motions that start in a part of the box, and store them in ``self.motion``.
+
+        ``omega`` has the ranges of the three initial rates in this part; the initial quaternion is any unit quaternion.
+        InputError is raised if the C text rejects the states.
+        """
         motion = [self.machine.blank("free_body")]
         zero = point(0.0)
         arguments = (
@@ -186,9 +198,9 @@ class _Context:
         self.motion = motion[0]
 
     def after(self, size: Bounded) -> list[Bounded]:
-        """Return the state (omega, then the quaternion) after a step of ``size``, with bounds of its errors.
+        """Return the state after a step of ``size`` seconds: three rates, then the quaternion, with error bounds.
 
-        They hold for phases of the elliptic functions in the range ``self.phase``.
+        The bounds hold if the phase of the elliptic functions after the step is in the range ``self.phase``.
         """
         result: list[Any] = [point(0.0)] * 7
         self.machine.call(f"{self.prefix}_at", ([self.motion], 0), 1, ([size], 0), (result, 0), (result, 3))
@@ -215,7 +227,11 @@ def _pairs_at(place: Place, count: int) -> list[Bounded]:
 
 
 def _exact_defect(moments: Place, omega: Place) -> list[Any]:
-    """Return |L|^2 - 2 T I_mid, which the C text sums exactly and rounds once."""
+    """Return |L|^2 - 2 T I_mid as a sum of two doubles; it replaces the C function ``exact_defect``.
+
+    L is the angular momentum, T the kinetic energy, I_mid the middle moment. The C function sums exactly and rounds
+    once, so the relative error is at most ``PAIR``. ``moments`` and ``omega`` point to three sums of two doubles each.
+    """
     inertia, rates = _pairs_at(moments, 3), _pairs_at(omega, 3)
     middle = sorted(range(3), key=lambda i: inertia[i].low)[1]
     total = point(0.0)
@@ -244,10 +260,11 @@ def _quaternion_product(a: Place, b: Place, c: Place) -> None:
 
 
 def _put_quaternion(rows: Place, count: int, *columns: Any) -> None:
-    """Store the product of an orthogonal matrix and a unit vector: errors of the vector keep their length.
+    """Store ``count`` quaternions, each an orthogonal 4x4 matrix times a unit vector, with bounds of their errors.
 
-    The rows and the vector have length 1, so that all partial sums are at most 1. Each of four products, three sums and
-    the rounding of the matrix to doubles makes an error of at most 2^-53 of terms that sum to 1 in squares.
+    ``rows`` points to the matrix; ``columns`` are four arrays with the vectors' components, then the array for the
+    results. The matrix does not change the length of the vector's error. The rows have length 1, so the roundings of
+    the matrix, the four products and the three sums add at most 5.1*2^-53.
     """
     *vector, q = columns
     before = 2 * max((x.pair or x).error for row in rows[0] for x in row)  # of the matrix, before it was rounded

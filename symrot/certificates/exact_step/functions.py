@@ -15,9 +15,11 @@ __all__ = ["ELLIPTIC", "SLACK", "SMALL", "agm", "carlson_rf", "exponential", "me
            "pair_total", "sine_and_cosine", "unit_quaternion", "widened", "with_pairs"]  # fmt: skip
 
 ELLIPTIC = 2.0**-90
-"""Relative error of R_F, of the mean and of exp of sums of two doubles, apart from errors of their arguments.
+"""Bound of the relative error of R_F, the arithmetic-geometric mean and exp on sums of two doubles.
 
-Their C text sums series to 1e-31 and loses at most 800 roundings of 2^-104; as measured, they are below 1e-30."""
+Errors of the arguments are not included. The C functions sum series to 1e-31, with at most 800 roundings of 2^-104;
+their measured relative errors are below 1e-30.
+"""
 SMALL = 1e-250  # smaller numbers lose digits in sums of two doubles
 MOST_FALL, MOST_RISE = -700.0, 700.0  # between these arguments, exp neither underflows nor overflows
 SLACK = 1e-12  # relative error of intervals computed with doubles from <math.h>
@@ -26,15 +28,18 @@ SLACK = 1e-12  # relative error of intervals computed with doubles from <math.h>
 def pair(value: Bounded) -> list[Any]:
     """Return a number as a sum of two doubles: [high part, low part].
 
-    The high part refers to the number itself; the low part is 0 if the number is exact, else None: no operation reads
-    it.
+    The high part is ``value`` rounded to a double, with ``value`` itself in its attribute ``pair``, from which
+    :func:`pair_total` recovers it. The low part, which no operation reads, is 0 if the number is exact, else None.
     """
     high = value.rounded(DOUBLE)
     return [Bounded(high.low, high.high, high.error, high.relative, value), point(0.0) if value.is_exact else None]
 
 
 def pair_total(doubles: list[Any]) -> Bounded:
-    """Return the number that a sum of two doubles stands for."""
+    """Return the value of a sum of two doubles [high, low] with bounds of its error; the inverse of :func:`pair`.
+
+    For a constant of the C text, such as pi, the value is high + low with a relative error of 2^-104.
+    """
     high: Bounded = doubles[0]
     low = doubles[1]
     if high.pair is not None:
@@ -47,7 +52,7 @@ def pair_total(doubles: list[Any]) -> Bounded:
 
 
 def with_pairs(operation: Callable[..., Bounded]) -> Callable[..., list[Any]]:
-    """Return an operation on numbers as an operation on sums of two doubles."""
+    """Return the function of sums of two doubles, lists [high, low], that applies ``operation`` to their values."""
     return lambda *pairs: pair(operation(*map(pair_total, pairs)))
 
 

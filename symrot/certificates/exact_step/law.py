@@ -22,7 +22,7 @@ from symrot.formula.program import Program
 __all__ = ["DIGITS", "STATES", "law_section"]
 
 DIGITS = 15
-"""Digits to which the equations hold at each state; a double has nearly 16."""
+"""Decimal digits to which F(x, 0) = x and dF/d(dt) = rates at F must hold at each tested state x."""
 LIMIT = Decimal(10) ** -DIGITS
 PRECISION = 60  # digits of the numbers
 STATES = 12
@@ -189,9 +189,12 @@ def law_section(
     source: str, name: str, rates: Program, values: Mapping[str, Fraction], parameters: Sequence[Fraction],
     omega_scale: Fraction, count: int = STATES,
 ) -> dict[str, Any]:  # fmt: skip
-    """Check that a C function is the motion at some states, and return what the certificate of a step states about it.
+    """Check at some states that a C function computes the motion; return the section that the step's certificate has.
 
-    The result has the law, the number of states, and the largest violation. Equal calls are computed once per process.
+    The motion is the solution of the rates' differential equations: a step of size 0 must change nothing, and the
+    derivative by dt of the state after a step must be the rates there. The section is a dict: ``law`` (these two
+    equations in words), ``states`` (their number), ``digits``, ``largest_violation`` (relative, as text). Equal calls
+    are computed once per process.
 
     Parameters
     ----------
@@ -237,9 +240,9 @@ def _violation(
     machine: Machine, name: str, rates: Program, constants: Mapping[str, Decimal], p: list[Decimal],
     state: list[Decimal], dt: Decimal, omega_scale: Decimal,
 ) -> Decimal:  # fmt: skip
-    """Return the largest error of the law in a step of size ``dt`` from a state, relative to the size of the numbers.
+    """Return the largest relative error, for one state and ``dt``, of F(x, 0) = x and dF/d(dt) = rates at F.
 
-    CertificateError is raised if the error is 10^-DIGITS or more.
+    F is the step that the C function ``name`` computes. CertificateError is raised if the error is 10^-DIGITS or more.
     """
     states = [component[0] for component in rates.signature.argument("y").components]
     scale = max(omega_scale, *map(abs, state[:3]))

@@ -45,9 +45,11 @@ def require_limits(file: str, operations: Operations) -> None:
 
 
 def motion_section(file: str, rates: Program, places: Mapping[str, str], operations: Operations) -> dict[str, Any]:
-    """Check that a C function is the motion; return the section ``motion`` of the certificate.
+    """Check that a C function computes the solution of the rates' equations; return the section ``motion``.
 
-    It states the law, and a bound of the probability that a function which violates the law passes the check.
+    The section of the certificate is a dict: ``law`` (for dt = 0 the step changes nothing, and its derivative by dt is
+    the rates at its result), ``points`` (the number of random points of the check), and
+    ``wrong_with_probability_below``: a bound of the probability that a C function which violates the law passes.
 
     Parameters
     ----------
@@ -70,7 +72,11 @@ def motion_section(file: str, rates: Program, places: Mapping[str, str], operati
 
 
 def _degree(file: str, rates: Program, places: Mapping[str, str], operations: Operations, point: int) -> int:
-    """Return a bound of the degree of the equations at a random point; raise CertificateError if one is violated."""
+    """Check the two equations F(x, 0) = x and dF/d(dt) = rates at one random point; return a bound of their degree.
+
+    The degree, as rational functions of the inputs, is counted along with the values; it bounds the probability that
+    wrong equations hold at the point. CertificateError is raised if an equation is violated.
+    """
     for attempt in count():
         values = {
             symbol: Residue(digest_number(operations.digest(), "motion", point, attempt, symbol), 1)

@@ -74,7 +74,7 @@ class BaseAngleTooLarge(Exception):
 
 
 class OutOfGenerators(Exception):
-    """Raised if a proof needs more generators, variables for function values, than the polynomial ring has."""
+    """Raised if a proof needs more variables for values such as sin(x) ("generators") than the polynomial ring has."""
 
 
 @dataclass
@@ -363,11 +363,11 @@ class LawProver(FormulaReader):
         return known
 
     def _pair(self, unit: PolyElement, angle: PolyElement) -> tuple[Quotient, Quotient]:
-        """Return (cosine, sine) of ``angle``, the base angle for multiples of ``unit``, such as x/2 for x.
+        """Return the pair (cosine, sine) of ``angle``, the base angle of a monomial ``unit``: x/2 or x itself for x.
 
-        Both are new generators, except for an arc tangent: its cosine and sine are the fractions found by :meth:`arc`.
+        The first call for ``unit`` makes two new generators, variables of the polynomials; later calls return the same
+        pair. For an arc tangent, cosine and sine are the fractions found by :meth:`arc`.
         """
-        # ``unit`` is the monomial of the angle without the number, such as x
         if unit not in self.angle_functions:
             cosine, sine = self.generator(f"cos({angle})"), self.generator(f"sin({angle})")
             self.step("circle", str(angle))

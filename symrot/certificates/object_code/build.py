@@ -26,9 +26,10 @@ FLAGS: tuple[tuple[str, ...], ...] = (
     ("-O3", "-mavx2", "-mfma", "-fno-tree-slp-vectorize", *STRICT), ("-O3", "-mavx2", "-mfma", *STRICT),
     ("-O2", "-mavx2", "-mfma", "-ffp-contract=fast", "-fno-math-errno"),
 )  # fmt: skip
-"""The sets of flags to try: strict code for SSE2 and AVX2, and contraction.
+"""The sets of compiler flags to try: strict code for SSE2 and AVX2, and code with contraction.
 
-With ``-O3 -mavx2 -mfma`` alone gcc 12 fuses a*b + c, although ``-ffp-contract=off`` forbids that.
+gcc 12 with ``-O3 -mavx2 -mfma`` fuses some a*b + c in spite of ``-ffp-contract=off``, unless
+``-fno-tree-slp-vectorize`` is given. So ``FLAGS`` has these flags both with and without it.
 """
 SECONDS, SECONDS_TO_ANSWER = 120, 20
 

@@ -236,8 +236,11 @@ def _flags(name: str, x: int, y: int, value: int, bits: int) -> tuple[int, int, 
     return int(value == 0), value >> top, carry, overflow
 
 
-def _one(name: str, number: int) -> Callable[[MachineState, Instruction], None]:
-    """Return the function that executes ``inc`` (``name`` "add") or ``dec`` ("sub"); ``number`` is 1."""
+def _with_constant(name: str, number: int) -> Callable[[MachineState, Instruction], None]:
+    """Return the function that adds ``number`` to the operand (``name`` "add"), or subtracts it ("sub").
+
+    ``number`` = 1 gives the instructions ``inc`` and ``dec``.
+    """
 
     def step(state: MachineState, instruction: Instruction) -> None:
         (target,) = operands_of(instruction, 1)
@@ -361,8 +364,8 @@ def _cmov(condition: str) -> Callable[[MachineState, Instruction], None]:
 
 INTEGERS: dict[str, Callable[[MachineState, Instruction], None]] = {
     "mov": _mov, "movabs": _mov, "lea": _lea, "imul": _imul, "push": _push, "pop": _pop, "leave": _leave,
-    "movzx": _movzx, "inc": _one("add", 1), "dec": _one("sub", 1), "shl": _shift("shl"), "sal": _shift("shl"),
-    "shr": _shift("shr"),
+    "movzx": _movzx, "inc": _with_constant("add", 1), "dec": _with_constant("sub", 1),
+    "shl": _shift("shl"), "sal": _shift("shl"), "shr": _shift("shr"),
     **{name: _arithmetic(name) for name in ("add", "sub", "and", "or", "xor", "cmp", "test")},
     **{f"set{name}": _set(name) for name in CONDITIONS}, **{f"cmov{name}": _cmov(name) for name in CONDITIONS},
 }  # fmt: skip

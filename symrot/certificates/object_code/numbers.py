@@ -161,7 +161,11 @@ def _same(state: MachineState, sources: list[Words], _: int) -> Words:
 
 
 def _shifted(width: int, shift: Callable[[int, int, int], int]) -> Numeric:
-    """Return the function that shifts each constant of ``width`` bits; ``shift(number, count, width)`` shifts one."""
+    """Return the function that executes a shift of packed integers of ``width`` bits by the instruction's constant.
+
+    ``shift(number, count, width)`` returns one integer shifted by ``count`` bits. The returned function raises
+    NotUnderstood if an integer to shift depends on the kernel's inputs.
+    """
 
     def numeric(state: MachineState, sources: list[Words], constant: int) -> Words:
         terms, results = state.context.terms, list[int]()

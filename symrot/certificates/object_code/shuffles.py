@@ -31,9 +31,10 @@ def _pick(places: Sequence[int]) -> Shuffle:
 
 
 def _by_constant(places: Callable[[int, int], Sequence[int]]) -> Shuffle:
-    """Return a function that picks the words with the numbers ``places(constant, k)`` from the k-th 128-bit block.
+    """Return the function that executes a shuffle whose instruction says, by a constant, which 32-bit words to pick.
 
-    The numbers are as for :func:`_pick`; the constant is a part of the instruction.
+    ``places(constant, k)`` are the numbers of the words to pick from the k-th 128-bit block: 0 to 3 are the block's
+    words in the first source, and 4 to 7 those in the last source.
     """
 
     def shuffle(state: MachineState, sources: list[Words], constant: int) -> Words:

@@ -460,7 +460,10 @@ class Terms:
         return [new[root] for root in roots]
 
     def undecided(self, roots: Iterable[int]) -> int | None:
-        """Return the term of a comparison of unknown outcome on which ``roots`` depend, or None if there is none."""
+        """Return the first comparison of unknown outcome among the terms from which ``roots`` are computed.
+
+        ``roots`` are terms, such as outputs; the result is a term of the kind ``"mask"``, or None if there is none.
+        """
         # none of its operands contains another such comparison, so that a case distinction may begin with it
         return next((index for index in self.order(roots) if self.kind(index) == "mask"), None)
 

@@ -33,7 +33,10 @@ _RULES = {
     f"    return _{name}(x), -x*_{slope}(x)*dx\n"
     for name, slope in _SLOPES.items()
 }
-"""The rules of derivatives: the slope of sinc(x) is -x*tangent_gap(x), and so on."""
+"""Function -> the text that must define its derivative in JAX, accepted only word for word.
+
+For example, the derivative of sinc(x) = sin(x)/x is -x*tangent_gap(x), where tangent_gap(x) = (sin x - x cos x)/x^3.
+"""
 
 
 def compare_jax(text: str, name: str, c_text: str, where: str = "kernel") -> None:

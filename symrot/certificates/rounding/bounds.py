@@ -234,15 +234,14 @@ def choice_phrases(task: BoundTask) -> list[str]:
 
 
 def error_at_point(task: BoundTask, at: Array) -> float:
-    """Return the error bound at the single point ``at``, which is at most that of a box with this point.
+    """Return the error bound at the single point ``at``: a stored bound for a box with this point must not be lower.
 
-    The result is 0 if there is no bound, and -1 if the task's region does not contain the point.
+    The result is 0, which contradicts no stored bound, if the bound at the point is infinite; it is -1 if the task's
+    region of allowed inputs does not contain the point.
     """
     point = np.stack([at, at])[:, :, None]
     evaluation = evaluate(
         task.graph, point, np.full((len(task.graph.conditions), 1), -1, np.int8), task.region, task.libm_ulp
     )
-    # -1 if the point is outside the task's region of allowed inputs
     value = float(evaluation.bound[0])
-    # 0 refutes no bound
     return value if isfinite(value) else 0.0

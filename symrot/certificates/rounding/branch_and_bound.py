@@ -250,7 +250,8 @@ def search(
     region : Region
         Restrictions of the inputs in the box.
     budget : int
-        The number of evaluated boxes after which no further batch is split; a polynomial may be searched twice.
+        The number of evaluated boxes after which no further batch is split. An output that is a polynomial may be
+        searched a second time, with mean value forms, and the budget then holds for each search.
     libm_ulp : float
         Largest error of sin, cos and atan2, in units in the last place.
     target : float, optional
@@ -313,7 +314,10 @@ def _narrow(run: _BoundSearch, parts: _Parts) -> NDArray[np.bool_]:
 
 
 def _spread(run: _BoundSearch, parts: _Parts) -> Array:
-    """Return how wide each part is, relative to the whole box: the largest width among the inputs of its obstacle."""
+    """Return, for each part, the largest of its widths relative to the whole box, over the inputs that matter.
+
+    These are the inputs that must be narrow for the part's obstacle, the operation that prevents a bound, to be finite.
+    """
     width = np.where(run.width > 0, run.width, 1.0)
     relative = (parts.boxes[1] - parts.boxes[0]) / width[:, None]
     return np.asarray((relative * run.depends[np.maximum(parts.obstacle, 0)].T).max(axis=0, initial=0.0))

@@ -238,7 +238,8 @@ class _GraphReader:
     def squares(self, index: int, depth: int = 0) -> list[tuple[int, int]] | None:
         """Return (x, roundings) for each term x^2 of a sum: (a, 2), (b, 3), (c, 3) for a^2 + (b^2 + c^2).
 
-        The result is None for another operation. ``depth`` is the number of additions from here to the sum.
+        The result is None if the operation ``index`` is no sum of squares. ``depth`` is the number of additions that
+        were passed on the way from the whole sum down to this operation.
         """
         node = self.source[index]
         # one rounding in the square, and one in each addition

@@ -32,9 +32,10 @@ def method() -> str:
 
 @cache
 def table() -> Mapping[str, Any]:
-    """Return the table of bounds that comes with symrot; without its file, a table that has no bounds.
+    """Return the content of ``bounds.json``, the rounding error bounds that come with symrot.
 
-    ``"bounds"`` maps the key of a task to its bound; ``"method"`` is the hash of the code that computed the bounds.
+    ``"bounds"`` maps a key, the hash of what is bounded (operations, box, budget ..), to the bound as data for JSON.
+    ``"method"`` is the hash of the code that computed the bounds. If the file is missing, there are no bounds.
     """
     try:
         return dict(json.loads(TABLE.read_text(encoding="utf-8")))
@@ -43,8 +44,10 @@ def table() -> Mapping[str, Any]:
 
 
 def printed_table(bounds: Iterable[tuple[str, SearchResult]]) -> str:
-    """Return the text of the table of bounds that comes with symrot, one bound per line, in the order of the keys."""
-    # a key is the hash of a task
+    """Return the text of ``bounds.json``, the rounding error bounds that come with symrot, from pairs (key, bound).
+
+    There is one bound per line, sorted by key. A key is the hash of what is bounded (operations, box, budget ..).
+    """
     rows = [f'  "{key}": {json.dumps(_to_json(bound))}' for key, bound in sorted(dict(bounds).items())]
     return f'{{\n "method": "{method()}",\n "bounds": {{\n' + ",\n".join(rows) + "\n }\n}\n"
 

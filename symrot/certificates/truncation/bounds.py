@@ -183,7 +183,10 @@ class _Problem:
         return "smaller dt or a smaller box"
 
     def _defective(self, values: Mapping[str, Any], size: Any) -> list[Any]:
-        """Return, for each state, a bound of the error that the defects of the method cause."""
+        """Return, for each state, a bound of the error of a step by a method with rounded coefficients, such as dop853.
+
+        It is the error that the rounding causes: the order conditions hold only up to small amounts, the defects.
+        """
         # valid for all states in the box ``values`` and all sizes up to ``size``
         count = len(self.defects) + 1
         largest = {name: Majorant.of(iv.mpf(abs(value).b), count) for name, value in values.items()}

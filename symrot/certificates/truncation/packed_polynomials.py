@@ -11,7 +11,7 @@ from typing import Any
 __all__ = ["PackedPolynomial", "variables"]
 
 WIDTH = 64
-"""Bits for the power of one variable."""
+"""Number of bits that each variable's power takes in the integer that stands for a monomial."""
 
 
 class PackedPolynomial:

@@ -80,9 +80,10 @@ class PowerSeries:
 
 
 class Majorant(PowerSeries):
-    """A power series whose coefficients bound the absolute values of the coefficients of a polynomial in series.
+    """A power series whose coefficients bound the absolute values of another series' coefficients.
 
-    Bounds add up, so ``-a`` is ``a``, and ``a - b`` is ``a + b``.
+    Operations give bounds for sums and products of the other series. Bounds add up, so ``-a`` is ``a``, and ``a - b``
+    is ``a + b``.
     """
 
     def __neg__(self) -> Self:

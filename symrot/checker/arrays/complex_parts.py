@@ -36,7 +36,7 @@ PAIRS = ("xy", "ab", "cd", "uv", "pq")
 
 NUMBER = re.compile(rf"({'|'.join(NUMBERS)})(_?[0-9])?")
 BAR = "_bar"
-"""Ending of the name of a conjugate."""
+"""Ending of the name of a complex conjugate: ``z_bar`` is the conjugate of z."""
 
 OF_COMPLEX = ("real_part", "imaginary_part", "conjugate", "abs")
 """Functions that a formula applies to complex numbers: the parts, the conjugate and the absolute value."""
@@ -132,8 +132,10 @@ def _is_of_complex(node: Node, letter: str) -> bool:
 
 
 def with_numbers(tree: Node, numbers: Mapping[str, Node]) -> Node:
-    """Return a tree in which the formulas ``numbers`` replace names: ``x + i*y`` replaces z, and the conjugate of
-    ``x + i*y`` replaces z_bar.
+    """Return a tree in which each name of a complex number is replaced by a formula, its value in ``numbers``.
+
+    With {"z": x + i*y}, ``x + i*y`` replaces z, and ``conjugate(x + i*y)`` replaces z_bar unless ``numbers`` has it
+    too.
     """
     conjugates = {f"{name}{BAR}": Node("call", "conjugate", (formula,)) for name, formula in numbers.items()}
     return substituted(tree, {**conjugates, **numbers})

@@ -25,8 +25,8 @@ OF_PAULI = frozenset({"sigma", "i", "I"})
 """The letters of identities such as ``σ_j σ_k = δ_jk + i ε_jkl σ_l``: Pauli's matrices, i and the unit matrix."""
 
 MOST_ENTRIES, WIDTH = 81, 9
-"""The largest number of terms of a written-out sum, and of entries of a written-out equation; and the number of entries
-in a row of the matrix that holds them."""
+"""MOST_ENTRIES is the largest number of terms of a written-out sum, and of components in which an equation is written
+out; WIDTH is the usual number of these components in a row of the matrix that either side becomes."""
 
 
 def written_out(relation: Relation) -> tuple[Relation, str]:

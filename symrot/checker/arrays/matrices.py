@@ -33,7 +33,7 @@ OF_MATRICES = ("det", "trace", "inverse", "adjugate", "transpose")
 UNIT_NAMES = ("I", "E", "I_3", "E_3")
 COLUMN = (3, 1)
 OF_NUMBERS = ("sin", "cos", "tan")
-"""Functions of a number, as of the length of a vector."""
+"""Names of functions whose argument is a number: in ``sin(v)``, a vector v means its length."""
 
 
 def matrix_of_entries(name: str, timed: bool = False) -> Node:
@@ -289,6 +289,8 @@ class _Lengths:
 
 
 def _has_added_name(node: Node) -> bool:
-    """Return whether a term of a sum is a single name, as a and b in ``a + b``."""
+    """Return whether one of the terms of a sum is a single name, as in ``a + 2*b``; an inertia tensor such as I does
+    not count.
+    """
     # such a name may be a vector too, so the other terms need not be scalars
     return any(term.kind == "name" and not is_tensor(str(term.value)) for term in map(without_sign, node.args))

@@ -33,19 +33,23 @@ from symrot.kinematics.rotation_vector import dcm_of_axis_angle
 __all__ = ["WithMatrices", "with_matrices_of_vectors"]
 
 SKEW_LETTER = re.compile(r"[A-DF-HJ-Z]|Omega")
-"""The capital letters that may be skew matrices: all but E and I, which are unit matrices."""
+"""Pattern of the letters that may be skew matrices: Ω and all capitals but E and I, which are unit matrices."""
 
 UNITS = ("I", "E", "I_3", "E_3")
 ANGLES = re.compile(r"(var)?(theta|phi)|alpha|beta|gamma|psi|delta|vartheta")
 ROTATION = re.compile(r"[RCQA](_\w+)?")
-"""The letters of angles in exponents, and of rotation matrices."""
+"""Patterns of the names of angles in exponents, such as θ in ``R = e^(θ K)``, and of the names of rotation matrices,
+such as R."""
 
 OMEGA = ("omega", "w")
-"""The letters of angular velocities."""
+"""Names of the angular velocity ω in ``Ω(ω)``."""
 
 
 class WithMatrices(NamedTuple):
-    """An equation with ``skew(k)`` for K, the unit vectors k that are new in it, and notes on how it is read."""
+    """An equation, ``relation``, in which formulas of vectors replace letters of matrices, such as ``skew(k)`` for K.
+
+    ``vectors`` are the unit vectors that the replacement adds, such as k; ``notes`` tell the user how letters are read.
+    """
 
     relation: tuple[str, Node, Node]
     vectors: tuple[Vector, ...] = ()
@@ -57,7 +61,10 @@ class WithMatrices(NamedTuple):
 def with_matrices_of_vectors(
     relation: tuple[str, Node, Node], vectors: Sequence[Vector], known: Collection[str]
 ) -> WithMatrices:
-    """Return an equation in which letters for the matrix of a vector are replaced by formulas of the vector.
+    """Return an equation in which a letter for the skew matrix or rate matrix of a vector is replaced by a formula.
+
+    In ``R = I + sin θ K + (1 - cos θ) K^2``, ``skew(k)`` replaces K. In ``q' = 1/2 Ω(ω) q``, the quaternion product of
+    q and (0, ω) replaces ``Ω(ω) q``. Other equations stay as they are.
 
     Parameters
     ----------
@@ -118,7 +125,9 @@ def _skew_letters(node: Node, hats: Collection[str], known: Collection[str]) -> 
 
 
 def _name_of(factor: Node) -> str:
-    """Return the name K if a factor is K, K^2 or ``dot(K, K)``, as which the readers take K^2; otherwise return ""."""
+    """Return the name K if a factor is K, a power of K, or ``dot(K, K)``, which K^2 becomes if the text marks K as a
+    vector; otherwise return "".
+    """
     if factor.kind == "call" and factor.value == "dot" and factor.args[0] == factor.args[1]:
         factor = factor.args[0]
     base = factor.args[0] if factor.kind == "power" else factor
@@ -153,9 +162,11 @@ def _in_exponents(sides: Sequence[Node], hats: Collection[str], known: Collectio
 
 
 def _rewritten(tree: Node, axes: Mapping[str, str]) -> Node:
-    """Return a tree with ``skew(k)`` for K and for K^2 as a scalar product, and without matrices in exponents.
+    """Return a tree with ``skew(k)`` in place of K and a rotation matrix in place of an exponential such as
+    ``e^(theta*K)``.
 
-    ``axes`` maps K to k.
+    ``axes`` maps K to k. The scalar product ``dot(K, K)``, as which K^2 may have been read, becomes ``skew(k)^2``. In a
+    sum with a skew matrix, a term E becomes the unit matrix I.
     """
     if (rotation := _rotation_of_exponential(tree, axes)) is not None:
         return rotation
@@ -196,7 +207,7 @@ def _exponentials(tree: Node, axes: Mapping[str, str]) -> Iterator[tuple[Node, N
 
 
 def _with_unit(tree: Node) -> Node:
-    """Return a sum with matrices in which the unit matrix is I, where the text has E."""
+    """Return a sum of matrices with the unit matrix I in place of each term that is the name E."""
     unit = Node("name", "I")
     terms = [unit if term.value == "E" and term.kind == "name" else term for term in tree.args]
     return replace(tree, args=tuple(terms))

@@ -24,14 +24,16 @@ NAMES = {f"sigma_{ending}": PAULI[axis] for axis, number_of in zip("xyz", "123",
 UNITS = IMAGINARY, UNIT_MATRIX = "i", "I"
 STEM = re.compile("sigma_[a-z123]$")
 SIZE = 4
-PARTS = ("name", "number", "sum", "product", "neg", "power", "inv", "list")
-"""The kinds of formulas in which letters may be matrices; sines and cosines are scalars."""
+NODE_KINDS = ("name", "number", "sum", "product", "neg", "power", "inv", "list")
+"""Kinds of tree nodes that an equation of Pauli's matrices may have, besides calls of the functions in ``CALLS``. In an
+equation with any other node, such as a transpose, sigma_x is not read as Pauli's matrix."""
 
 OF_MATRICES = ("trace", "det")
-"""Functions of matrices only: a sigma_x in their arguments is Pauli's matrix, since a stress sigma_x has no trace."""
+"""Names of functions that take only matrices: in ``det(sigma_x)``, sigma_x is Pauli's matrix, for if it were a stress,
+a number, it would have no determinant."""
 
 CALLS = ("sin", "cos", "sqrt", "Matrix", *OF_MATRICES)
-"""The functions in equations of Pauli's matrices."""
+"""Names of the functions that an equation of Pauli's matrices may call."""
 
 
 def with_pauli_matrices(relation: Relation, known: Collection[str]) -> tuple[Relation, tuple[tuple[str, Node], ...]]:
@@ -53,7 +55,7 @@ def with_pauli_matrices(relation: Relation, known: Collection[str]) -> tuple[Rel
     if (name := _in_exponent(nodes, matrices)) and IMAGINARY in used:
         raise InputError(f"expected {name} outside of exponents (write e^(i a {name}) as cos(a) + i {name} sin(a))")
     names_another = any(side.kind == "name" and side.value not in (*matrices, *UNITS) for side in (left, right))
-    is_plain = all(node.kind in PARTS or (node.kind == "call" and node.value in CALLS) for node in nodes)
+    is_plain = all(node.kind in NODE_KINDS or (node.kind == "call" and node.value in CALLS) for node in nodes)
     sigmas = [node for node in nodes if node.kind == "name" and node.value in NAMES]
     # a product or power without other names: sigma_x^2 = 1
     multiplied = any(_is_product_of_matrices(node) for node in nodes) and used <= {*NAMES, UNIT_MATRIX}

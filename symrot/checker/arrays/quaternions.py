@@ -33,16 +33,17 @@ LETTERS = ("q", "p", "Q", "P")
 """First letters of names that are usually quaternions."""
 
 UNITS = {"i": 1, "j": 2, "k": 3}
-"""Name of a unit -> its place among the components."""
+"""Maps the name of a quaternion unit to its index in the components (q_0, q_1, q_2, q_3)."""
 
 ANGULAR = re.compile(r"(omega|Omega|w)(_[A-Za-z]+)?")
-"""Names of angular velocities."""
+"""Pattern of the names of angular velocities."""
 
-RATES = ("q", "Q", "beta", "epsilon")
-"""Names that mean a quaternion in a product with an angular velocity, even without a sign such as ⊗ or a star."""
+USUAL_NAMES = ("q", "Q", "beta", "epsilon")
+"""Names that mean a quaternion, even without a sign such as ⊗ or a star, in an equation such as ``q' = 1/2 omega q``;
+and in ``|q|`` if the text has q_bar."""
 
 ENDINGS = ("_vec", "_v", "v")
-"""Endings of a name for the vector part of a quaternion."""
+"""Endings of the name of a vector part: the vector part of the quaternion q is ``q_vec``, ``q_v`` or ``qv``."""
 
 
 @dataclass(frozen=True)
@@ -223,7 +224,7 @@ def _quaternion_names(
                 add(inner)
         elif node.kind == "call" and node.value == "abs":  # |q|, of which the text has the conjugate
             inner = node.args[0]
-            if inner.value in (*RATES, "p") and f"{inner.value}_bar" in used:
+            if inner.value in (*USUAL_NAMES, "p") and f"{inner.value}_bar" in used:
                 add(inner)
     for side, other in ((sides[0], sides[1]), (sides[1], sides[0])):
         if (rotating := _rotating(side, other)) is not None:
@@ -251,7 +252,7 @@ def _turning_quaternion(sides: Sequence[Node]) -> Sequence[Node]:
             return factors[:1]
         own = [factor for factor in factors if not ANGULAR.fullmatch(str(factor.value))]
         is_rate = side.kind == "call" and len(factors) == 2 and len(own) == 1 and own[0] == rate
-        if is_rate and str(own[0].value) in RATES:
+        if is_rate and str(own[0].value) in USUAL_NAMES:
             return own
     return ()
 

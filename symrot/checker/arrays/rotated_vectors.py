@@ -43,8 +43,10 @@ def as_matrix_of_map(relation: Relation, vectors: Collection[str], known: Collec
 
 
 def _is_image(image: Node, vector: Node) -> bool:
-    """Return whether ``image`` is the vector part of a product, such as ``q v q*``, that contains ``vector`` v once, or
-    a sum in which each term contains v once, and one in a cross or dot product.
+    """Return whether the form of a formula ``image`` shows that it is a linear map of ``vector``, here v.
+
+    True for the vector part of a formula that contains v once, such as ``q v q*``; also for a formula that is linear in
+    v and has v in a cross or dot product, such as ``v cos θ + n × v sin θ``.
     """
     # such a product or sum is a linear map of the vector
     nodes = nodes_of(image)

@@ -41,13 +41,15 @@ function."""
 
 
 def _of_scalar(function: Callable[[Expr], Expr], below: Callable[[Expr], Expr] | None = None) -> Any:
-    """Return a function that turns the tree of a call such as ``tan(x)`` into SymPy's tan(x)."""
+    """Return the function that evaluates a call such as ``tan(x)``: from the scope and the tree to SymPy's tan(x).
+
+    ``below`` returns the denominator of the value, cos(x) for tan(x), which is recorded as a divisor that may be zero.
+    """
 
     def call(scope: Scope, node: Node) -> Expr:
         value = scope.argument(node.args[0], f"as the argument of {node.value}")
         if terms_of_angle(value) > MOST_ANGLE_TERMS:
             raise scope.fail(node.args[0], f"an angle whose sine has at most {MOST_ANGLE_TERMS} terms when expanded")
-        # below(x) is the denominator of the value, as cos(x) for tan(x)
         if below is not None:
             scope.divide_by(below(value), node)
         made = function(value)

@@ -16,7 +16,7 @@ __all__ = ["Notation", "TypedNotation", "notation_of", "with_formulas"]
 
 
 SIGN = re.compile(r"( and | or |[<>!=]=|[<>])")
-"""A sign or word between the formulas of a condition."""
+"""Pattern of what separates the formulas of a condition such as ``0 <= x**2``: a comparison sign, "and" or "or"."""
 
 
 class Notation(Protocol):

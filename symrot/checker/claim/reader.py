@@ -244,7 +244,11 @@ def _typed(text: _Text, one_side: bool) -> Iterator[Reading]:
 
 
 def _only(text: _Text, one_side: bool, rates: bool = False) -> Reading:
-    """Return the usual reading of a text; raise InputError if the text is ambiguous, except for primes if ``rates``."""
+    """Return the usual reading of a text; raise InputError if the text is unreadable, or ambiguous.
+
+    ``one_side`` says that the text is a formula without a relation. If ``rates``, a prime always means a rate, and x'
+    makes no text ambiguous.
+    """
     strict, refusal = _strict(text, one_side)
     if strict is not None:
         return strict
@@ -305,10 +309,12 @@ def read_relation(source: str, where: str = "", declared: Declared | None = None
 
 
 def _strict(text: _Text, one_side: bool) -> tuple[Reading | None, InputError | None]:
-    """Return (reading, None) for SymPy syntax, (None, error) for an unreadable text, (None, None) for ``2x``."""
+    """Return (reading, None) for SymPy syntax, and (None, error) for a text that cannot be read by the rules of SymPy.
+
+    Return (None, None) for a text that these rules can read, but that has other notation too, such as ``2x``.
+    """
     try:
         strict = text.read(True, one_side)
     except InputError as reason:
         return None, reason
-    # a readable text may have other notation too, such as 2x
     return (None if strict.plain else strict), None

@@ -18,7 +18,8 @@ __all__ = [
 ]
 
 MOST_PIECES = 200_000
-"""The largest number of symbols, numbers and operations in a value; those that occur twice are counted twice."""
+"""The largest number of symbols, numbers and operations in the value of a formula, the SymPy expression that is built
+from it; parts that occur twice are counted twice."""
 
 MOST_DIFFERENTIATED = 3_000
 """The largest number of symbols, numbers and operations in a formula that is differentiated."""

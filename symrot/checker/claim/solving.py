@@ -24,10 +24,11 @@ __all__ = [
 ]  # fmt: skip
 
 Solve = Callable[[Node], Node]
-"""A function from the other side of an equation to a formula for the quantity."""
+"""A function that solves an equation for a quantity: from the right side to a formula. To solve ``2*k^2 = I`` for k, it
+takes I and returns ``(I/2)^(1/2)``."""
 
 Quantity = tuple[str, bool]
-"""A name, and whether its rate is meant: x and dx/dt are two quantities."""
+"""A pair of a name and whether its rate is meant: ("x", False) is x, and ("x", True) is dx/dt."""
 
 INVERSES = {"sin": "asin", "cos": "acos", "tan": "atan", "exp": "log", "log": "exp"}
 """Maps a function to the inverse function, by which an equation is solved for the argument."""

@@ -220,7 +220,10 @@ def replaced(node: Node, path: Path, made: Node) -> Node:
 
 
 def exchanged(node: Node, trees: Mapping[Node, Node]) -> Node:
-    """Return the tree with new subtrees, by the map ``trees`` from old ones to new ones, which are not searched."""
+    """Return the tree with each subtree that is a key of ``trees`` replaced by its value.
+
+    The new subtrees are not searched for further keys.
+    """
     return trees.get(node) or replace(node, args=tuple(exchanged(child, trees) for child in node.args))
 
 

@@ -39,8 +39,9 @@ __all__ = [
 
 MARK = "\N{RIGHTWARDS ARROW}"
 BASES = (("i", "j", "k"), *(tuple(f"e{mark}{axis}" for axis in axes) for mark in ("_", "") for axes in ("123", "xyz")))
-"""Names of basis vectors, which mean the axes if at least two of them are vectors of a text. Those other than i, j and
-k mean the axes only if the text has no further vectors."""
+"""Groups of names of basis vectors. The names of a group mean the x, y and z axes if at least two of them are vectors
+of a text (in bold type, with an arrow or a hat) and none of them is differentiated by time; in groups other than i, j
+and k, only if the text has no vector outside of the group."""
 
 AXES = ("xyz", "123", "1234", "0123")
 """Endings of the names of a vector's components, "xyz" for a_x, a_y and a_z; the four digits are for quaternions."""
@@ -195,7 +196,10 @@ def beside_directions(factors: Sequence[Node]) -> list[Node]:
 
 
 def may_be_mixed(name: str) -> bool:
-    """Return whether a text may have ``name`` with and without a hat: no axis, whose coordinate has the same letter."""
+    """Return whether ``name`` with a hat may be the direction of the vector that a text calls ``name`` without a hat.
+
+    False for names of axes such as x, i and e_1: with a hat they are axes, and without a hat x is a coordinate.
+    """
     return name not in "xyzijk" and not name.startswith("e_")
 
 

@@ -37,7 +37,11 @@ class EquivalentClaim:
     names: Mapping[str, str] = field(default_factory=dict)
 
     def in_typed_form(self, verdict: Verdict) -> Verdict:
-        """Return ``verdict``, on the equivalent claim, for the typed one, without repairs that cannot be rewritten."""
+        """Return ``verdict``, on the equivalent claim, in the form of the typed claim; nothing is decided again.
+
+        Repairs and names of symbols are changed back to the typed form, and ``note`` is added. Repairs that cannot be
+        changed back are left out.
+        """
         repairs = [changed for repair in verdict.repairs if (changed := self._rewritten(repair)) is not None]
         known = tuple(
             replace(formula, mapping={own: self.names.get(other, other) for own, other in formula.mapping.items()})

@@ -20,7 +20,10 @@ __all__ = ["on_inertia_in_frames", "without_brackets"]
 
 INERTIA = re.compile(r"(?P<stem>[IJ]|mathbf[IJ])(?:_(?P<frame>\w+))?(?P<mark>_prime|_bar|_tilde)?")
 ROTATION = re.compile(r"(?:math(?:bf|cal|rm))?[A-Z]\w*")
-"""The name of a matrix, which begins with a capital letter; in n^T I n, a moment of inertia, n is a vector."""
+"""Pattern of the name of a rotation matrix, which begins with a capital letter, as R in ``R^T I_A R``.
+
+In ``n^T I_A n``, a moment of inertia about an axis, the small letter n names a vector.
+"""
 CONDITION = "{} takes components in the frame of {} to those in the frame of {}"
 
 
@@ -28,7 +31,7 @@ BRACKETED = re.compile(
     r"\[\s*(?:\\(?:mathbf|boldsymbol)\s*\{?\s*)?(?P<letter>[IJ])\s*\}?\s*\]\s*_\s*"
     r"(?:\{\s*(?:\\(?:mathcal|mathrm|text)\s*\{?\s*)?(?P<long>\w+)[\s}]*\}|(?P<short>\w))"
 )
-"""A matrix of components such as ``[I]_B`` or ``[I]_{\\mathcal B}``."""
+"""Pattern of a tensor of inertia in brackets with the letter of a frame: ``[I]_B`` or ``[I]_{\\mathcal B}``."""
 
 
 def without_brackets(source: str) -> str:
@@ -43,9 +46,10 @@ def without_brackets(source: str) -> str:
 
 
 def on_inertia_in_frames(claim: Claim) -> Verdict | None:
-    """Return the verdict "conditional" on a claim of the form ``I_B = R^T I_A R``; None for other claims.
+    """Return the verdict "conditional" on ``I_B = R^T I_A R`` or ``I_A = R I_B R^T``, else None.
 
-    The condition says from which frame to which R must take components.
+    The condition says from which frame to which frame R must take components. Claims with hypotheses or with words on
+    their meaning get None too.
     """
     if claim.relation is None or claim.hypotheses or claim.context:
         return None

@@ -49,7 +49,11 @@ def tested_on_rotations(claim: Claim, verdict: Verdict) -> Verdict:
 
 
 def _matrix_and_vector(claim: Claim) -> tuple[str, str] | None:
-    """Return the names (R, omega) of a claim for the rate of R(t) with one vector omega; None for other claims."""
+    """Return (matrix name, vector name) for a claim on the rate of a matrix, ("R", "omega") for ``R' = [omega]x R``.
+
+    Return None unless the rate alone is one side, and the only vectors and matrices are this 3 x 3 matrix and one
+    vector.
+    """
     assert claim.relation is not None
     names = [name for side in claim.relation[1:] if (name := _name_of_rate(side))]
     define = dict(claim.define)
@@ -69,9 +73,10 @@ def _name_of_rate(side: Node) -> str:
 
 
 def _holds(claim: Claim, matrix: str, vector: str) -> bool:
-    """Return whether an equation is proven for a rotation ``matrix`` and its angular velocity in the body or in space.
+    """Return whether a claim is proven with a general rotation as ``matrix``, and its angular velocity as ``vector``.
 
-    The angular velocity may have either sign. True also if an entry of the matrix or vector is not a single symbol.
+    The angular velocity may be that in the body or in space, with either sign. Return True without a test if the matrix
+    or vector has a formula as an entry: no rotation can then be put in its place.
     """
     values = claim.definitions.values
     angles = [Function(f"angle_{number}", real=True)(time) for number in range(3)]
@@ -99,7 +104,7 @@ def _angular_velocities(turned: Any) -> Iterator[Any]:
 
 
 def _without_transpose(relation: Relation, matrix: str) -> Relation:
-    """Return an equation with R for the transpose of R, if ``matrix`` is R."""
+    """Return an equation with each transpose of ``matrix`` replaced by the matrix itself: R for ``R^T``."""
 
     def plain(tree: Node) -> Node:
         if tree.kind == "transpose" and tree.args[0] == Node("name", matrix):

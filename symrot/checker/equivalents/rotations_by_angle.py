@@ -15,14 +15,19 @@ CALL = re.compile(
 OTHERS = re.compile(
     r"(?:=|\^|[IE1]|\{\s*(?:T|-1|\\top|[0-9])\s*\}|T|-1|⁻¹|[²³ᵀ0-9·*$\s]|\\cdot|\\,|\\mathbf\{I\}|\\top)+"
 )
-"""All else in an equation that has nothing but such rotations, their powers and transposes, and the unit matrix."""
+"""Pattern of the rest of an equation whose rotations ``R(..)`` are cut out: signs, powers, numbers, the unit matrix.
+
+An equation with any other rest, such as ``R(\\theta) = A``, has more in it than rotations.
+"""
 
 NOTE = "R(..) is read as the rotation by an angle in a plane, or about one fixed axis, here z"
 
 
 def with_axis(source: str) -> tuple[str, str]:
-    """Return a text with ``R_z(..)`` for ``R(..)``, and a note, for an equation between rotations by several angles or
-    one angle of digits and pi alone, such as ``R(π)^2 = I``. Other texts are returned unchanged, with an empty note.
+    """Return (text, note): an equation between rotations with ``R_z(..)`` for each ``R(..)``, and a note for the user.
+
+    The equation must have at least two different angles, or a number as its only angle, as ``R(π)^2 = I`` has. Return
+    any other text unchanged, with an empty note.
 
     Examples
     --------

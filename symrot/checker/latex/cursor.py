@@ -27,15 +27,17 @@ MATRIX_CALLS = ("Matrix", "cross", "skew", "vee", "inverse", "transpose", "eye",
                 "dcm_of", "hstack", "adjugate", *ROTATIONS)  # fmt: skip
 MARKS = frozenset("-+*/=<>:;()[]{}&|,−·×⋅")
 TEXT_FONTS = ("\\text", "\\mbox", "\\textrm")
+"""LaTeX commands that hold words in a formula."""
+
 JOINTS = ("and", "or", "where", "with", "so that", "thus", "hence", "i.e", "if", "for", "when", "since", "so")
-"""Fonts of words in a formula, and words in such a font that join two equations."""
+"""Words that, inside a command such as ``\\text{and}``, join two equations."""
 
 _COMMANDS = {character: f"\\{name}" for name, character in GREEK.items()} | {
     "π": "\\pi",
     "φ": "\\phi",
     "ε": "\\epsilon",
 }
-"""Greek letter -> its command."""
+"""Greek letter -> its LaTeX command: ``\\alpha`` for α."""
 
 WRAPPERS = (
     ("", ""), ("$$", "$$"), ("$", "$"), (r"\[", r"\]"), (r"\(", r"\)"),
@@ -84,12 +86,14 @@ class Names:
 
 
 def is_letter(item: tree.Node) -> bool:
-    """Return whether an item is a Latin or Greek letter."""
+    """Return whether a node of the LaTeX tree is a Latin or Greek letter."""
     return item.kind == "letter" or item.text[1:] in GREEK
 
 
 def is_d(item: tree.Node) -> bool:
-    r"""Return whether an item is the d of a derivative: d, ``\partial`` or an upright d, perhaps with a power."""
+    r"""Return whether a node of the LaTeX tree is a d as in ``dx/dt``: d, ``\partial`` or an upright d, perhaps to a
+    power.
+    """
     if isinstance(item, tree.Scripts):
         return is_d(item.base) and [script.text for script in item.scripts] == ["^"]
     if isinstance(item, tree.Font):
@@ -107,7 +111,8 @@ class Cursor(cursor.Cursor):
     names : Names
         The names that the claim declares.
     flips : collection of (str, int), optional
-        The keys of the ambiguous pieces that get their less usual meaning; None refuses an ambiguous text.
+        The ambiguous parts of the text, each as (kind, position), that get their less usual meaning; None refuses an
+        ambiguous text.
     upper : bool
         Whether plus-minus signs stand for their upper signs.
     """
@@ -173,7 +178,7 @@ class Cursor(cursor.Cursor):
         super().__init__(source, where, read(source, where, pieces))
 
     def doubtful(self, kind: str, item: tree.Node, stop: int, expected: str, place: tree.Node | None = None) -> bool:
-        """Record an ambiguous piece of the text, ``item`` to ``stop``; return whether it gets its less usual meaning.
+        """Record that the text from ``item`` to ``stop`` is ambiguous; return whether it gets its less usual meaning.
 
         Raises
         ------
@@ -188,7 +193,7 @@ class Cursor(cursor.Cursor):
         return doubt.key in self.flips
 
     def words(self, item: tree.Node) -> str:
-        r"""Return the words of an item such as ``\text{for all}``; an empty text if the item is a formula or a name."""
+        r"""Return the words in a node such as ``\text{for all}``; an empty text if the node is a formula or a name."""
         if not isinstance(item, tree.Font) or item.text not in TEXT_FONTS:
             return ""
         inside = item.inside

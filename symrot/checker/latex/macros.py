@@ -47,7 +47,7 @@ BRACED = ("\\underbrace", "\\overbrace")
 """Commands after which an index or power is a remark on the formula, not a part of it."""
 
 LONGEST_NUMBER = 8
-"""The number of tokens after a wide space among which the number of an equation must end."""
+"""The number of tokens after ``\\quad`` that may hold an equation number such as ``(5.12)`` and the token after it."""
 
 SPELLED = {
     **{name: f"\\{name}" for name in ("sin", "cos", "tan", "cot", "sec", "csc", "sinh", "cosh", "tanh", "exp", "ln",
@@ -166,9 +166,9 @@ class _Expansion:
                 yield from self.longer(piece)
 
     def equation_number(self) -> int:
-        r"""Return how many tokens the number of an equation has, with its brackets, as in ``a = b \qquad (5.12)``.
+        r"""Return how many tokens an equation number in brackets has, such as ``(5.12)`` after ``a = b \qquad``.
 
-        Return 0 if no such number follows.
+        Return 0 if there is none at the cursor.
         """
         rest = self.pieces[self.place : self.place + LONGEST_NUMBER]
         texts = [piece.text for piece in rest]

@@ -32,7 +32,8 @@ MARKS_IN_SUBSCRIPTS = {
     "+": "plus", "-": "minus", "*": "star", "\\ast": "star", "\\perp": "perp", "\\parallel": "par", "\\|": "par",
     "\\max": "max", "\\min": "min", "\\infty": "inf", ",": "_", "/": "_", ":": ":", "\\rm": "", "\\circ": "circ",
 }  # fmt: skip
-"""Mark in a subscript -> the text for it in a name: "plus" for +."""
+"""Sign or command in a subscript -> the text for it in a name: "plus" for +."""
+
 TOTALS = ("M", "F", "N", "T", "tau", "Gamma")
 """Letters of torques and forces, of which a sum without limits is the total."""
 
@@ -131,7 +132,7 @@ class NamesPart(SumsPart):
         return Node("name", f"{name}_{quantity.value}")
 
     def end_of_next(self) -> int:
-        """Return the position in the text at which the next item ends."""
+        """Return the position in the text at which the letter, command or bracket at the cursor ends."""
         return max(self.peek(1).start, self.peek().start + 1)
 
     def refuse_call(self) -> None:
@@ -152,7 +153,10 @@ class NamesPart(SumsPart):
         return pieces
 
     def pieces(self, items: tuple[tree.Node, ...]) -> Iterator[str]:
-        """Yield the texts of the ``items`` of a subscript, upright or not; marks become letters, and a comma ``_``."""
+        """Yield the parts of a name's subscript as text: "a" and "plus" for ``a+``, with "_" for a comma.
+
+        A prime becomes "_prime". Fonts and the marks of vectors are left out. ``items`` are the nodes of the subscript.
+        """
         for item in items:
             if isinstance(item, tree.Row):
                 yield from self.pieces(item.items)

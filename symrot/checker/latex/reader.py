@@ -23,21 +23,21 @@ from symrot.latex import tree
 __all__ = ["Equation", "Names", "latex_readings", "read_latex", "read_latex_formula"]
 
 Line = tuple[list[str], list[Node]]
-"""The signs of a chain ``a = b = c``, and the sides between them."""
+"""A chain ``a = b = c`` as (its relation signs, its sides): (["==", "=="], [a, b, c])."""
 
 ALIGNED = (*SEVERAL_LINES, "array")
-"""Environments whose lines hold equations."""
+"""Names of the LaTeX environments in which each line is an equation."""
 
 AROUND = ("equation", "subequations", "displaymath", "math")
-"""Environments with one formula, or with an environment of lines in them."""
+"""Names of the LaTeX environments that hold one formula, or one environment of several lines such as ``aligned``."""
 
 SEPARATORS = (",", ";", "\\\\")
-"""Marks between two equations."""
+"""Tokens that separate two equations."""
 
 
 @dataclass(frozen=True)
 class Equation:
-    """An equation read from LaTeX, its text in SymPy syntax, and its vectors whose components get names."""
+    """An equation read from LaTeX, its text in SymPy syntax, and the vectors in it, whose components get names."""
 
     relation: Relation
     text: str
@@ -98,7 +98,10 @@ def latex_readings(source: str, names: Names | None = None) -> list[Reading]:
 
 
 def _reading(source: str, names: Names, flips: Collection[tuple[str, int]]) -> Reading:
-    """Return the reading of a LaTeX text in which the pieces with the keys ``flips`` have their less usual meaning."""
+    """Return the reading of a LaTeX text in which the ambiguous parts ``flips`` have their less usual meaning.
+
+    Each of them is (kind of ambiguity, position in the text).
+    """
     lines, reader = _read(source, "", names, _Interpreter.equations, flips)
     if reader.both_signs:
         lines += _read(source, "", names, _Interpreter.equations, flips, upper=False)[0]
@@ -296,7 +299,7 @@ class _Interpreter(CalculusPart):
 
 
 def _rows(table: tree.Table) -> Iterator[tuple[tuple[tree.Node, ...], bool]]:
-    """Yield (items, continues) for each line of an environment.
+    """Yield (nodes, continues) for each line of an environment.
 
     ``continues`` tells whether the line continues the equation before it, as ``+ b`` does.
     """
@@ -312,7 +315,7 @@ def _rows(table: tree.Table) -> Iterator[tuple[tuple[tree.Node, ...], bool]]:
 
 
 def _texts(items: Sequence[tree.Node]) -> set[str]:
-    """Return the texts of some items and of all items inside them, and ``table`` for a matrix."""
+    """Return the texts of LaTeX nodes and of all nodes inside them, such as ``\\times``, and "table" for a matrix."""
     texts: set[str] = set()
     for item in items:
         texts |= {item.text}

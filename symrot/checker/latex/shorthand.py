@@ -15,13 +15,16 @@ FUNCTIONS: tuple[Mapping[str, str], ...] = (
     {"c": "cos", "s": "sin", "v": "vers"},
     {"C": "cos", "S": "sin", "V": "vers"},
 )
-"""Letters that are used as short forms together -> their functions; vers is the versine 1 - cos."""
+"""Letter of a short form -> its function: small letters, and capital letters, which need a C and an S of their own.
+
+The function vers is the versine 1 - cos.
+"""
 
 NO_ANGLES = ("pi", "omega", "Omega")
 """Greek letters that name no angle: the number pi, and angular velocities."""
 
-RATES_OF_THREE = "123"
-"""The numbers of the angles of a sequence."""
+ANGLE_NUMBERS = "123"
+"""Subscripts of the three angles of a sequence: with ``\\dot\\theta_1`` in the text, ``c_2`` means cos(theta_2)."""
 
 _DEFINITION = re.compile(
     r"(?:(?:c|C)_?\{?(\\[A-Za-z]+)\}? *= *\\cos *[({ ]*\1[)} ]*|(?:s|S)_?\{?(\\[A-Za-z]+)\}? *= *\\sin *[({ ]*\2[)} ]*)"
@@ -29,8 +32,8 @@ _DEFINITION = re.compile(
 """A definition of a short form, such as ``c_\\theta = \\cos\\theta``; one of its two groups is the angle."""
 
 FEWEST_NUMBERED = 2
-"""The smallest number of cosines, and of sines, at which letters with numbers, such as c_1, c_2, s_1 and s_2, are read
-as short forms."""
+"""The smallest number of different cosines, and of different sines, at which letters with numbers, such as c_1, c_2,
+s_1 and s_2, are read as short forms."""
 
 
 class Shorthand(NamedTuple):
@@ -64,9 +67,9 @@ def shorthands(pieces: Sequence[Token], declared: Collection[str] = ()) -> dict[
 
 
 def _of_letters(pieces: Sequence[Token], letters: Mapping[str, str]) -> dict[int, Shorthand]:
-    """Return the short forms in a text by their positions; ``letters`` maps letters to functions, as c to cos.
+    """Return {position: short form} for a text; ``letters`` maps letters to functions, as c to cos.
 
-    Return {} unless there are both a cosine and a sine.
+    Return {} unless there are both a cosine and a sine, and if c or s alone is a name in the text.
     """
     named: dict[int, Shorthand] = {}
     numbered: dict[int, tuple[str, str]] = {}
@@ -93,9 +96,10 @@ def _of_letters(pieces: Sequence[Token], letters: Mapping[str, str]) -> dict[int
 
 
 def _numbered(pieces: Sequence[Token], numbered: Mapping[int, tuple[str, str]]) -> dict[int, Shorthand]:
-    """Return a Shorthand, cos(theta_1), for each member of ``numbered``, {0: ("cos", "1")} for ``c_1`` at position 0.
+    """Return {position: short form} for letters with a number, such as ``c_1``, which means cos(theta_1).
 
-    Return {} if ``c_1`` may be a name.
+    ``numbered`` is {position: (function, number)}, {0: ("cos", "1")} for ``c_1`` at position 0. Return {} if the
+    letters may be names, and if the text does not show the letter of the angles.
     """
     digits = {digit for _, number in numbered.values() for digit in number}
     # next to the rate of theta_1, c_2 and s_3 are functions of theta_2 and theta_3
@@ -104,7 +108,7 @@ def _numbered(pieces: Sequence[Token], numbered: Mapping[int, tuple[str, str]]) 
     # c_1 alone may be a name
     if min(map(len, numbers.values())) < fewest:
         return {}
-    letter = _numbered_angle(pieces, {*digits, *RATES_OF_THREE} if fewest == 1 else digits)
+    letter = _numbered_angle(pieces, {*digits, *ANGLE_NUMBERS} if fewest == 1 else digits)
     if not letter:
         return {}
     return {
@@ -114,7 +118,10 @@ def _numbered(pieces: Sequence[Token], numbered: Mapping[int, tuple[str, str]]) 
 
 
 def _has_rate(pieces: Sequence[Token], digits: Collection[str]) -> bool:
-    r"""Return whether a text has the rate of an angle with a number, such as ``\dot\theta_1``."""
+    r"""Return whether a text has the rate of an angle with a number, ``\dot\theta_1``, and all numbers are 1, 2 or 3.
+
+    ``digits`` are the numbers of the short forms in the text.
+    """
     for place, piece in enumerate(pieces[:-3]):
         grouped = pieces[place + 1].text == "{"
         inner = pieces[place + 1 + grouped]
@@ -122,7 +129,7 @@ def _has_rate(pieces: Sequence[Token], digits: Collection[str]) -> bool:
         if piece.text == "\\dot" and _is_angle(inner) and pieces[after].text == "_":
             number = _subscript(pieces, after + 1)
             # beside the rate, c_2 and s_3 are probably cos(theta_2) and sin(theta_3)
-            if number and {number, *digits} <= {*RATES_OF_THREE}:
+            if number and {number, *digits} <= {*ANGLE_NUMBERS}:
                 return True
     return False
 
@@ -166,7 +173,11 @@ def _subscript(pieces: Sequence[Token], place: int) -> str:
 
 
 def _numbered_angle(pieces: Sequence[Token], digits: Collection[str]) -> str:
-    r"""Return the letter of the angles that c_1 means: ``theta`` if the text has ``\theta_1``; empty if unclear."""
+    r"""Return the letter of the angles in the short forms ``c_1``, ``s_2``: "theta" if ``c_1`` means cos(theta_1).
+
+    The text shows the letter by an angle with one of the ``digits``, such as ``\theta_1``. Return "theta" if the text
+    has no angle at all, and "" if the letter is unclear.
+    """
     numbered: dict[str, set[str]] = {}
     for place, piece in enumerate(pieces[:-2]):
         after = place + 1 + (pieces[place + 1].text == "}")  # the subscript of \dot{\theta}_1 follows the bracket

@@ -28,7 +28,7 @@ FUNCTIONS = {
         *(alias for alias, name in ALIASES.items() if name in DEFINED or name in ("asin", "acos", "atan")),
     )
 }  # fmt: skip
-"""Command -> function; ``\\log``, whose base differs from book to book, is refused."""
+"""LaTeX command -> function: tan for ``\\tg``. ``\\log``, whose base differs from book to book, is refused."""
 
 LONGEST_MATRIX_NAME = 2
 """The largest number of letters in the name of a matrix in brackets: ``[C]`` and ``[FB]``."""
@@ -40,18 +40,19 @@ SIGNS = {
     "=": "==", "\\ge": ">=", "\\geq": ">=", "\\geqslant": ">=", ">": ">", "\\gt": ">", "\\le": "<=", "\\leq": "<=",
     "\\leqslant": "<=", "<": "<", "\\lt": "<",
 }  # fmt: skip
-"""Sign of a relation -> the sign in a claim."""
+"""Relation sign in LaTeX -> the sign in SymPy syntax: ``>=`` for ``\\geq``, ``==`` for ``=``."""
 
 QUATERNION_SIGNS = ("\\otimes", "\\circ", "\\odot")
+"""Signs of the product of quaternions."""
+
 QUATERNION_LETTERS = ("q", "p", "Q", "P")
-"""Signs of the product of quaternions, and letters that are usually quaternions."""
+"""Letters that are usually quaternions."""
 
 ENDS = frozenset([
     "", "+", "-", ")", "]", "\\}", "}", "&", "\\\\", ",", ";", "\\end", "\\cdot", "\\times", "*", "/", "^", "_", "'",
     *QUATERNION_SIGNS, *SIGNS,
 ])  # fmt: skip
-"""Texts of the items that cannot start a factor; "" is that of the end."""
-
+"""Texts of the LaTeX nodes that cannot start a factor; the node at the end of a formula has the text ""."""
 
 NORM = re.compile(r"\\(?:\||lVert|Vert)(.*?)\\(?:\||rVert|Vert)")
 """A norm, such as ``\\|a + b\\|``: the names in it are vectors, or quaternions."""
@@ -68,13 +69,16 @@ class SumsPart(Cursor):
     """The methods of the LaTeX reader that parse sums, products, powers, brackets and matrices."""
 
     vector: Callable[[str], Node]
+    """Method of a subclass that returns the node of a vector with the given name."""
+
     named: Callable[[str, Any], Node]
+    """Method of a subclass that parses the subscript, primes and ``(t)`` after a name."""
+
     leibniz: Callable[[], Node | None]
-    """The methods of subclasses that return the node of a vector, that parse what follows a name, and that parse
-    ``dx/dt``."""
+    """Method of a subclass that parses a derivative with a slash, ``dx/dt``, and returns None if there is none."""
 
     readers: ClassVar[Mapping[str, Callable[[Any, Any], Node]]] = {}
-    """Kind or text of an item -> the method, perhaps of a subclass, that parses a factor that starts with it."""
+    """Kind or text of a LaTeX node -> the method, perhaps of a subclass, that parses a factor that starts with it."""
 
     def expression(self) -> Node:
         """Parse a sum and return its tree."""
@@ -258,8 +262,8 @@ class SumsPart(Cursor):
         return node
 
     def raised(self, node: Node, inside: tree.Node) -> Node:
-        r"""Return ``node`` with what is raised after it, ``inside``: a power, a transpose ``^T``, a conjugate ``^*``,
-        degrees ``^\circ``, or ``^\times``.
+        r"""Return ``node`` with the superscript ``inside``: a power, a transpose ``^T``, a conjugate ``^*``, degrees
+        ``^\circ``, or a skew matrix ``^\times``.
         """
         mark = tree.alone(inside)
         if isinstance(mark, tree.Font) and mark.text in UPRIGHT:

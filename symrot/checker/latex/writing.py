@@ -22,11 +22,11 @@ COMMANDS = {
     "asin": "\\arcsin", "acos": "\\arccos", "atan": "\\arctan", "log": "\\ln", "trace": "\\operatorname{tr}",
     "real_part": "\\Re", "imaginary_part": "\\Im",
 }  # fmt: skip
-"""Built-in function -> its command."""
+"""Built-in function -> its LaTeX command: ``\\ln`` for log."""
 
 DOTS = {1: "\\dot", 2: "\\ddot", 3: "\\dddot"}
 VECTOR_SIGNS = {"cross": "\\times", "dot": "\\cdot", "qmul": "\\otimes"}
-"""Product of two vectors or quaternions -> its sign."""
+"""Product of two vectors or quaternions -> its sign in LaTeX."""
 
 NO_VECTORS: Mapping[str, bool] = {}
 

@@ -3,7 +3,7 @@
 from collections.abc import Iterable
 from typing import Any, NamedTuple
 
-__all__ = ["Stats", "Switching", "stats_of"]
+__all__ = ["Stats", "Switching", "rounding_warning", "stats_of"]
 
 
 class Switching(NamedTuple):
@@ -66,6 +66,14 @@ class Stats(NamedTuple):
     def later(self, epoch: float) -> "Stats":
         """Return the statistics of an integration with its times converted to scene times, by adding ``epoch``, s."""
         return self._replace(rounded_beyond=tuple([t + epoch for t in self.rounded_beyond]))
+
+
+def rounding_warning(t: float) -> str:
+    """Return a sentence that warns of errors beyond the time t, s, of ``rounded_beyond``, for torques as formulas."""
+    return (
+        f"beyond t = {t!r} s the rounding of the torque, a formula of the time, may change the motion by more than "
+        "the tolerance; choose a larger tolerance"
+    )
 
 
 def stats_of(cost: Any, seconds: float, switchings: Iterable[Switching], rounded_beyond: Iterable[float] = ()) -> Stats:

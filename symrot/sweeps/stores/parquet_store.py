@@ -27,6 +27,7 @@ from symrot.sweeps.layout import (
     messages_of,
 )
 from symrot.sweeps.optional import optional
+from symrot.sweeps.stores.folder import create, require_own
 
 __all__ = ["ParquetStore"]
 
@@ -48,15 +49,20 @@ class ParquetStore:
     def __init__(self, path: Path, header: Header) -> None:
         self._parquet, self._arrow = optional("pyarrow.parquet", "-o"), optional("pyarrow", "-o")
         self.path = path
-        description = path / DESCRIPTION
-        if path.exists() and not (path.is_dir() and not any(path.iterdir())):
-            header = continued(header, path, lambda: json.loads(description.read_text(encoding="utf-8")))
-        else:
-            path.mkdir(exist_ok=True)
-            text = json.dumps({"identity": dict(header.identity), "rows": header.rows}, indent=2)
-            write(description, lambda stream: stream.write(text.encode()))
+        text = json.dumps({"identity": dict(header.identity), "rows": header.rows}, indent=2).encode()
+
+        def fill(folder: Path) -> None:
+            (folder / DESCRIPTION).write_bytes(text)
+
+        is_taken = path.exists() and not (path.is_dir() and not any(path.iterdir()))
+        if is_taken or not create(path, fill):
+            header = continued(header, path, self._description)
         self.header = header
         self._long = any(TIME in variable.dimensions for variable in header.variables)
+
+    def _description(self) -> dict[str, Any]:
+        content: dict[str, Any] = json.loads((self.path / DESCRIPTION).read_text(encoding="utf-8"))
+        return content
 
     def _file(self, start: int) -> Path:
         return self.path / f"part-{start:012d}.parquet"
@@ -66,7 +72,11 @@ class ParquetStore:
         return [each for each in self.header.ranges() if not self._file(each[0]).exists()]
 
     def write(self, chunk: Chunk) -> None:
-        """Store a chunk; a chunk that is stored already is replaced by the same values."""
+        """Store a chunk; a chunk that is stored already is replaced by the same values.
+
+        Raise InputError if the folder holds another sweep by now.
+        """
+        require_own(self.header, self.path, self._description)
         n, times = chunk.stop - chunk.start, self.header.times
         repeats = len(times) if self._long else 1
         columns: dict[str, Any] = {TRAJECTORY: np.repeat(np.arange(chunk.start, chunk.stop), repeats)}
@@ -124,8 +134,10 @@ class ParquetStore:
     def finish(self, tables: list[Table], only_statistics: str) -> None:
         """Store the statistics ``tables`` at the end of a sweep.
 
-        Raise InputError if ``only_statistics`` is not empty, since values cannot be removed from these files.
+        Raise InputError if ``only_statistics`` is not empty, since values cannot be removed from these files, or if
+        the folder holds another sweep by now.
         """
+        require_own(self.header, self.path, self._description)
         if tables:
             rows = self._arrow.Table.from_pylist([row for table in tables for row in _rows(table, self.header.times)])
             write(self.path / STATISTICS, lambda stream: self._parquet.write_table(rows, stream))

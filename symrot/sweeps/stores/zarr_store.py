@@ -4,8 +4,6 @@ Each array has the same chunks as the sweep. A chunk with a status is complete, 
 """
 
 import json
-import os
-import shutil
 import warnings
 from pathlib import Path
 from typing import Any
@@ -30,6 +28,7 @@ from symrot.sweeps.layout import (
     messages_of,
 )
 from symrot.sweeps.optional import optional
+from symrot.sweeps.stores.folder import create, require_own
 
 __all__ = ["ZarrStore"]
 
@@ -48,44 +47,19 @@ class ZarrStore:
     def __init__(self, path: Path, header: Header) -> None:
         zarr = optional("zarr", "-o")
         self.path = path
-        if path.exists():
+        if path.exists() or not create(path, lambda folder: _fill(zarr, folder, header)):
             header = continued(header, path, lambda: _description(zarr, path))
-        else:
-            self._create(zarr, header)
         self.header = header
         self._group = zarr.open_group(str(path), mode="r+")
         self._open: dict[str, Any] = {}
-
-    def _create(self, zarr: Any, header: Header) -> None:
-        """Create the arrays that ``header`` describes, without values, in a new folder; ``zarr`` is the package."""
-        part = self.path.with_name(f".{self.path.name}.{os.getpid()}.part")
-        shutil.rmtree(part, ignore_errors=True)
-        try:
-            group = zarr.open_group(str(part), mode="w", zarr_format=3)
-            sizes = {TIME: len(header.times), COMPONENT[0]: len(COMPONENT[1])}
-            for variable in header.variables:
-                shape = tuple(sizes[name] for name in variable.dimensions)
-                group.create_array(
-                    variable.name, shape=(header.count, *shape), chunks=(header.rows, *shape), dtype="f8",
-                    fill_value=np.nan, dimension_names=(TRAJECTORY, *variable.dimensions),
-                    attributes=variable.attributes, compressors=_fast(zarr),
-                )  # fmt: skip
-            own = {"shape": (header.count,), "chunks": (header.rows,), "dimension_names": (TRAJECTORY,)}
-            group.create_array(STATUS, dtype="i1", fill_value=NOT_COMPUTED, attributes=LABELS[STATUS], **own)
-            group.create_array(MESSAGE, dtype=str, fill_value="", attributes=LABELS[MESSAGE], **own)
-            _add(group, Table(TIME, (TIME,), header.times, {"units": "s", "long_name": "time"}))
-            if any(COMPONENT[0] in variable.dimensions for variable in header.variables):
-                _add(group, Table(COMPONENT[0], (COMPONENT[0],), np.array(COMPONENT[1], dtype=object), {}))
-            group.attrs.update({"scene": header.scene, ROWS: header.rows, IDENTITY: json.dumps(dict(header.identity))})
-            # the folder gets its final name when it is complete
-            part.replace(self.path)
-        finally:
-            shutil.rmtree(part, ignore_errors=True)
 
     def _array(self, name: str) -> Any:
         if name not in self._open:
             self._open[name] = self._group[name]
         return self._open[name]
+
+    def _require_own(self) -> None:
+        require_own(self.header, self.path, lambda: _description(optional("zarr", "-o"), self.path))
 
     def pending(self) -> list[tuple[int, int]]:
         """Return the pairs (start, stop) of trajectories, one per chunk, whose results are not stored yet."""
@@ -93,7 +67,11 @@ class ZarrStore:
         return [each for each in self.header.ranges() if status[each[0]] == NOT_COMPUTED]
 
     def write(self, chunk: Chunk) -> None:
-        """Store a chunk; a chunk that is stored already is replaced by the same values."""
+        """Store a chunk; a chunk that is stored already is replaced by the same values.
+
+        Raise InputError if the folder holds another sweep by now.
+        """
+        self._require_own()
         rows = slice(chunk.start, chunk.stop)
         for name, values in arrays_of(chunk, self.header.inputs).items():
             self._array(name)[rows] = values
@@ -134,8 +112,10 @@ class ZarrStore:
         Raises
         ------
         InputError
-            If another process has finished this sweep and kept only other statistics.
+            If another process has finished this sweep and kept only other statistics, or has begun another sweep in
+            the folder.
         """
+        self._require_own()
         zarr = optional("zarr", "-o")
         removed = str(zarr.open_group(str(self.path), mode="r").attrs.get(REMOVED, ""))
         if removed and removed != only_statistics:
@@ -158,6 +138,26 @@ class ZarrStore:
         """Return the results as an xarray Dataset, which reads its values when they are used."""
         xarray = optional("xarray", "to_xarray")
         return xarray.open_zarr(str(self.path), consolidated=None if self.finished else False)
+
+
+def _fill(zarr: Any, folder: Path, header: Header) -> None:
+    """Create the arrays that ``header`` describes, without values, in an empty folder; ``zarr`` is the package."""
+    group = zarr.open_group(str(folder), mode="w", zarr_format=3)
+    sizes = {TIME: len(header.times), COMPONENT[0]: len(COMPONENT[1])}
+    for variable in header.variables:
+        shape = tuple(sizes[name] for name in variable.dimensions)
+        group.create_array(
+            variable.name, shape=(header.count, *shape), chunks=(header.rows, *shape), dtype="f8",
+            fill_value=np.nan, dimension_names=(TRAJECTORY, *variable.dimensions),
+            attributes=variable.attributes, compressors=_fast(zarr),
+        )  # fmt: skip
+    own = {"shape": (header.count,), "chunks": (header.rows,), "dimension_names": (TRAJECTORY,)}
+    group.create_array(STATUS, dtype="i1", fill_value=NOT_COMPUTED, attributes=LABELS[STATUS], **own)
+    group.create_array(MESSAGE, dtype=str, fill_value="", attributes=LABELS[MESSAGE], **own)
+    _add(group, Table(TIME, (TIME,), header.times, {"units": "s", "long_name": "time"}))
+    if any(COMPONENT[0] in variable.dimensions for variable in header.variables):
+        _add(group, Table(COMPONENT[0], (COMPONENT[0],), np.array(COMPONENT[1], dtype=object), {}))
+    group.attrs.update({"scene": header.scene, ROWS: header.rows, IDENTITY: json.dumps(dict(header.identity))})
 
 
 def _description(zarr: Any, path: Path) -> dict[str, Any]:

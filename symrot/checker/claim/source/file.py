@@ -26,7 +26,8 @@ TEXT_KEYS = (
 )  # fmt: skip
 LIST_KEYS = ("symbols", "functions", "given", "alternatives", "lost", "editable")
 OTHER_KEYS = ("where", "define", "units")
-"""The keys of a claim in a file: texts, lists of texts, and other values."""
+"""The keys of a claim in a file: the value of a key in TEXT_KEYS is a text, in LIST_KEYS a list of texts, and in
+OTHER_KEYS a value of another shape, which ``_check_key`` describes."""
 
 FILE_KEYS = ("schema", "claim", "document", "title", "kind", "lost", "note")
 """The keys of a file; the last five describe the document from which its claims come."""

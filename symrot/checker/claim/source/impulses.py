@@ -25,12 +25,12 @@ EARLIER = ("1", "i", "a", "A", "0", "initial", "begin", "before")
 
 
 def with_rates(reading: Reading) -> Reading:
-    """Return a reading (interpretation of a text) with ``M = diff(L, t)`` for ``∫ M dt = ΔL``; others unchanged.
+    """Return a reading (interpretation of a text) with ``M = diff(L, t)`` in place of lines such as ``∫ M dt = ΔL``.
 
     Raises
     ------
     InputError
-        For an integral over time without limits beside anything but the change of a quantity.
+        If an integral over time without limits is in a line that is no equation with the change of a quantity.
     """
     lines, vectors, notes = [], dict(reading.vectors), list(reading.notes)
     for chain in reading.lines:
@@ -66,7 +66,7 @@ def _by_rate(relation: Relation, vectors: Mapping[str, bool]) -> tuple[Relation,
 
 
 def _integrand(term: Node) -> Node | None:
-    """Return M for the integral of M over time alone, or for its negative, if M has no t inside; else None."""
+    """Return M if a term is ``∫ M dt`` or ``-∫ M dt`` and M does not contain t; None for any other term."""
     bare = without_sign(term)
     if bare.kind != "call" or bare.value != "integrate" or len(bare.args) != 2:
         return None
@@ -76,9 +76,9 @@ def _integrand(term: Node) -> Node | None:
 
 
 def _rate_of_change(terms: Sequence[Node], vectors: Mapping[str, bool]) -> tuple[Node, str] | None:
-    """Return the rate of the quantity whose change is a sum of terms, and its name; None if it is no change.
+    """Return the rate of a sum of terms that is the change of a quantity, and the name of what changes.
 
-    ``I*omega_2 - I*omega_1`` gives ``I*diff(omega, t)``.
+    ``I*omega_2 - I*omega_1`` gives ``I*diff(omega, t)`` and omega. None if the sum is no such change.
     """
     if len(terms) == 1:
         (term,) = terms

@@ -86,8 +86,8 @@ def _with_substitutions_first(lines: Sequence[Chain]) -> tuple[Chain, ...]:
 
 
 def _with_signs_of_products(assume: Sequence[str], stated: Context) -> tuple[list[str], Context]:
-    """Return the hypotheses without ``I_xy = ∫ x y dm`` and the like, and the context with the sign that these
-    define.
+    """Return the hypotheses except definitions such as ``I_xy = -∫ x y dm``, and the context with the sign of products
+    of inertia that these definitions state.
     """
     others = []
     for source in assume:
@@ -118,7 +118,10 @@ def _complex_numbers(lines: Sequence[Chain], formulas: Sequence[Node]) -> dict[s
 
 
 def _names_of_unit(lines: Sequence[Chain], formulas: Sequence[Node]) -> dict[str, Node]:
-    """Return {"q": i} for the lines ``q = i`` and ``q^2 = -1``, whose only letter is the imaginary unit; else {}."""
+    """Return the names that lines give to the imaginary unit: {"q": i} for the two lines ``q = i`` and ``q^2 = -1``.
+
+    Return {} for a single line, and if the formulas have any letter besides q and i (or j).
+    """
     first = {chain.sides[0]: chain.sides[1] for chain in lines if chain.sides[0].kind == "name" and len(lines) > 1}
     named = {str(name.value): side for name, side in first.items() if side in (Node("name", "i"), Node("name", "j"))}
     letters = {str(node.value) for node in nodes_of(*formulas) if node.kind in ("name", "call")}

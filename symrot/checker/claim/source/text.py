@@ -226,8 +226,11 @@ def _with_entries(matrices: Sequence[tuple[str, Node]], relation: Relation) -> I
 def _with_vectors(
     relation: Relation, vectors: list[Vector], define: Sequence[tuple[str, Node]]
 ) -> tuple[Relation, list[Vector], bool]:
-    """Return a relation with ``eye(n)`` for I or 1, ``vectors`` and the relation's other vectors, and whether it has
-    eye(n).
+    """Return a relation with ``eye(n)`` for the unit matrix I or 1, a list of vectors, and whether the relation was
+    changed.
+
+    The list has ``vectors`` and the names that the relation uses as vectors or inertia tensors, as b in
+    ``cross(a, b)``.
     """
     # defined names are no new vectors
     named = {name for name, _ in define} | {vector.name for vector in vectors}
@@ -257,7 +260,11 @@ def _shapes(vectors: Sequence[Vector], define: Sequence[tuple[str, Node]]) -> di
 
 
 def _with_arrays(relation: Relation, vectors: Sequence[Vector], define: Sequence[tuple[str, Node]]) -> Quaternions:
-    """Return the quaternions, matrices and columns of a relation, and the relation with ``dot(a, b)`` for ``a^T b``."""
+    """Return the Quaternions of a relation, with the relation's matrices and columns added.
+
+    ``definitions`` then has the matrices too, ``vectors`` has the names of the columns too, and ``relation`` has
+    ``dot(a, b)`` for ``a^T b``.
+    """
     known = {name for name, _ in define}
     names = {vector.name for vector in vectors}
     generic = {*matrices_of_entries(define)}
@@ -312,7 +319,10 @@ def _on_vectors(vectors: Sequence[Vector]) -> Iterator[str]:
 
 
 def _units_of_directions(vectors: Sequence[Vector]) -> dict[str, str]:
-    """Return the unit "1" for each component of a vector of length 1, whose letter may be that of a rate."""
+    """Return {"n_x": "1"}: no unit for each component of a vector n of length 1 that is no axis.
+
+    Without this, the letter of a component such as omega_x would suggest the unit of a rate.
+    """
     return {f"{v.name}_{axis}": "1" for v in vectors if v.unit and not v.is_axis for axis in v.axes}
 
 
