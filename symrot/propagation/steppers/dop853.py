@@ -51,7 +51,7 @@ FAR = 1e4  # steps from the epoch: farther on, the time would be rounded to more
 WINDOW = 2048
 """Number of steps after which the epoch, from which the rates count time, is moved to the present time.
 
-Phases ``a*t`` in the rates then stay below some 1e3 rad, and the moves cost a few per cent of the time. The phase errors
+Phases ``a*t`` in the rates then stay below some 1e3 rad, and the moves cost a few per cent of the time. Phase errors
 between two moves are alike and add up: with 8192 steps they were five times as large.
 """
 
