@@ -42,7 +42,8 @@ _STOP = frozenset({
 COMPONENTS = {
     "first": "x1Ap", "second": "y2Bq", "third": "z3Cr", "scalar": "04sw", "x": "x1Ap", "y": "y2Bq", "z": "z3Cr",
 }  # fmt: skip
-"""Maps a component or an axis to the endings of names for it; p, q and r are the rates of an aircraft."""
+"""Maps a word for a component or an axis to the possible last letters of a name for it: p, q and r are the rates of an
+aircraft."""
 
 INDICES = frozenset("xyz0123")
 ANGLES = ("phi", "theta", "psi")
@@ -55,7 +56,7 @@ def frame_of(name: str) -> str:
 
 
 OF_BODY_AXES = ("principal axes", "in the body", "Euler's equations", "rotation of a symmetric body")
-"""Words in the names of derived formulas whose components are along axes of the body."""
+"""Phrases in the names of derived formulas; a formula with one of them is for components along axes of the body."""
 
 
 def _axes_of(name: str) -> str:
@@ -136,13 +137,14 @@ def misfits(context: Context, name: str, quantity: str) -> Iterator[str]:
 TITLES_OF_TOPS = ("symmetric top", "heavy top", "fast top", "sleeping top")
 GYRATION = "radius of gyration"
 DIRECTIONS = {"axial moment of inertia": "z", "transverse moment of inertia": "xy"}
-"""Maps the title of a moment of inertia to the axes of a round body about which it may be."""
+"""Maps the title of a moment of inertia of a rod or round body to the letters of the axes that it can be about; z is
+the axis of symmetry."""
 
 
 def _has_axes(name: str, axes: str) -> bool:
-    """Return whether the ``name`` of a moment of inertia has one of the ``axes``, such as "xy".
+    """Return whether the axis in a formula's ``name``, x in "moment of inertia of a disk, x axis", is one of ``axes``.
 
-    True without an axis, and for bodies that are not round.
+    True also if the name has no axis, or if its body is neither a rod nor round.
     """
     _, bodies = LINES["about a transverse axis through the centre"]
     axis = re.search(r", ([xyz]) axis", name)
@@ -162,12 +164,13 @@ def _is_along(name: str, line: str) -> bool:
 
 
 def _where_else(place: str, line: str, name: str) -> str:
-    """Return words for an axis not along ``line``: its ``place``, or "about another axis" if ``line`` has this place
-    too.
+    """Return words for the axis in a formula's ``name``, which is not along ``line``, such as "about a diameter".
+
+    These are its ``place``, such as "about an end", or "about another axis" if ``line`` goes through the same point, or
+    if ``place`` is empty.
     """
     _, bodies = LINES[line]
     places = [own for body, (own, _) in bodies.items() if body in bodies_of_formula(name)]
-    # ``line`` is a title such as "about a diameter", to which the formula's axis is not parallel
     return place if place and place not in places else "about another axis"
 
 
@@ -241,7 +244,8 @@ def admits_letters(context: Context, name: str, mapping: Mapping[str, str], lett
 
 
 EXCHANGED = ({"phi", "psi"}, {"dphi", "dpsi"})
-"""Letters of the first and the third angle, and of their rates."""
+"""Pairs of letters that some authors exchange: phi and psi for the first and the third angle, dphi and dpsi for their
+rates."""
 
 PLACE_OF_RATE = {"dphi": "first", "dtheta": "second", "dpsi": "third"}
 

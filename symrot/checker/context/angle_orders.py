@@ -59,11 +59,11 @@ def has_order(sequence: str) -> bool:
 
 
 def are_roll_pitch_yaw(sequence: str, places: Mapping[str, int]) -> bool:
-    """Return whether phi, theta and psi can be roll, pitch and yaw: the angles about x, y and z.
+    """Return whether the letters phi, theta and psi can be roll, pitch and yaw, the angles about x, y and z.
 
-    True for sequences such as ZXZ, whose first and last axes are equal.
+    ``places`` maps each letter to the position of its angle in ``sequence``, from 0. True also for a sequence such as
+    ZXZ, which has no roll, pitch and yaw: the usage of aeronautics then restricts nothing.
     """
-    # ZXZ has no roll, pitch and yaw, so that the usage of these books restricts nothing
     axes = {"phi": "X", "theta": "Y", "psi": "Z"}
     return has_order(sequence) or all(
         sequence[place].upper() == axes[letter] for letter, place in places.items() if letter in axes

@@ -111,7 +111,7 @@ class Body:
 
 GENERAL = "general"
 MOTIONS = ("rolls", "rolls down a slope", "rolls from a height")
-"""The motions of a body that rolls."""
+"""The values of ``Body.motion`` that mean that the body rolls."""
 
 TOPS = ("symmetric top", "heavy top", "fast top", "of a top", "on a top", "steady precession", "sleeping top")
 
@@ -209,8 +209,8 @@ _SIDES: dict[str, tuple[tuple[str, Fraction], ...]] = {
     "ellipsoid": ((r"(?:half|semi)-?\s?ax[ei]s", Fraction(1)), (r"diameters|full axes", Fraction(1, 2))),
     "other": ((r"(?:half|semi)[- ]?(?:sides?|edges?|ax[ei]s)", Fraction(2)), ("sides?|edges?", Fraction(1))),
 }  # fmt: skip
-"""Maps the form of a body to (noun, factor) for a list of its dimensions: the author's letter times the factor is
-symrot's dimension."""
+"""Maps the form of a body to pairs (noun for its dimensions, factor), as in "semi-axes a, b, c": the author's letter
+times the factor is symrot's dimension."""
 
 _HARMLESS = re.compile(
     r"\b(uniform|homogeneous|rigid|solid|(of |with )?(constant|uniform) density|(of |with |and )?mass( [a-zA-Z]\b)?"
@@ -218,7 +218,7 @@ _HARMLESS = re.compile(
     r"|free to rotate|hinged|pivoted|rotating|rotates|spinning|spins|turning|turns|swinging|swings|oscillating"
     r"|flywheel|pulley|platform|in (form|shape) of|shaped like|shaped as|modelled as|modeled as|treated as)(?![\w-])"
 )
-"""Words about a body that change none of its formulas."""
+"""Pattern of words about a body that change none of its formulas."""
 
 _LINE = r"(?:(?:,? (?:and )?)?(?:axis |line )?(?:that is )?)?"
 _FACES = r"(?:it|plane|disk|ring|hoop|plate|lamina|surface|faces?|flat faces?|bases?|ends?|end faces?)\b"
@@ -233,13 +233,14 @@ _DIRECTIONS: tuple[tuple[tuple[str, ...], str, str], ...] = (
     ((*_FLAT, *_ROUND), rf"(?:perpendicular|normal) to (?:plane of )?{_FACES}", "z"),
     ((*_FLAT, *_ROUND), rf"(?:parallel to|lying in|in) (?:plane of )?{_FACES}", "xy"),
 )
-"""Kinds or forms of bodies, words for the direction of an axis through them, and the axes with this direction."""
+"""Triples of kinds or forms of bodies, a pattern of words for the direction of an axis through such a body, and the
+axes with this direction: "z" for "perpendicular to its plane"."""
 
 _PLANE = re.compile(
     r",? ?\b(?:that )?(?:lying |lies |placed |is )?in (?:plane (?:of )?)?"
     r"([xyz])(?:,? and |, ?|[- ])?([xyz])(?:[- ]?plane)?(?![\w-])"
 )
-"""Words for the plane of a flat body, such as "in the xy-plane"."""
+"""Pattern of words for the plane of a flat body, such as "in the xy-plane"."""
 _HEIGHT_OF_FALL = re.compile(r"\b(from|down)( a| the)? height( [a-zA-Z]\b)?")
 _WITHOUT_AXIS = ("box", "plate", "ellipsoid", "triangular_plate", "triangular_prism", "tetrahedron")
 """Shapes whose formulas have no axis of symmetry."""
@@ -249,7 +250,7 @@ _ALONG = re.compile(
     r"(?:(?:symmetry )?axis(?: of symmetry)?(?: is)?(?: along| in)?|along)(?: the)? ([xyz])"
     r"(?:[- ](?:axis|direction))?(?!\w)(?!,? (?:and )?(?:along )?[xyz]\b)"
 )
-"""Words for the axis of symmetry of a body, "with axis x"."""
+"""Pattern of words for the axis of symmetry of a body, such as "with axis x"."""
 
 
 @cache

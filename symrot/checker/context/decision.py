@@ -62,8 +62,10 @@ def in_context(claim: Claim, named: NamedFormula, verdict: Verdict) -> Verdict:
 
 
 def _with_all_words(claim: Claim, named: NamedFormula, verdict: Verdict) -> Verdict:
-    """Return the verdict on a claim in its context; if a word is unused, the context makes the claim neither "true" nor
-    "false". ``verdict`` is the verdict without the context.
+    """Return the verdict on a claim in its context; words of the context that the check cannot use weaken it.
+
+    ``verdict`` is the verdict without the context. If a word is unused, "true" becomes "recognised", and "false"
+    becomes ``verdict``. If a word about the body is not understood, the verdict is "definition".
     """
     # words about the body or its axis that symrot does not understand leave open what the claim means
     if obscure := claim.context.obscure:
@@ -90,14 +92,15 @@ def _with_all_words(claim: Claim, named: NamedFormula, verdict: Verdict) -> Verd
 
 
 MOST_EDITS = 40
-"""The largest number of edits of a formula that are tried if it is one for another quantity than the context states."""
+"""The largest number of edits that are tried as repairs of a formula that symrot knows as the formula of another
+quantity, body or point than the context states."""
 
 
 ENGLISH = ("from", "to", "that", "at", "between", "on", "of")
 
 
 def _by_context(claim: Claim, named: NamedFormula, verdict: Verdict) -> Verdict:
-    """Return the verdict that follows from comparing a claim with the formulas that its context means.
+    """Return the verdict that follows from comparing a claim with the known formulas whose names fit its context.
 
     Return ``verdict``, the one without the context, if the comparison decides nothing.
     """
@@ -214,7 +217,10 @@ def _value(claim: Claim, named: NamedFormula) -> Any:
 def _by_meant_formulas(
     claim: Claim, named: NamedFormula, verdict: Verdict, quantity: str, stated: str
 ) -> Verdict | None:
-    """Return the verdict by comparison with all known formulas that a claim's context can mean; None if undecided."""
+    """Return the verdict by comparing a claim with all known formulas whose names fit its context; None if undecided.
+
+    The name "moment of inertia of a thin rod about an end" fits a context with the words "rod" and "about an end".
+    """
     if (value := _value(claim, named)) is None:
         return None
     words = None if claim.context.meaning_of(quantity) else words_of(named)
@@ -251,8 +257,9 @@ def _transposed(decisions: Sequence[tuple[Meant, Decision]]) -> Iterator[tuple[M
 
 
 def _on_lacking_letters(claim: Claim, named: NamedFormula, quantity: str, stated: str) -> Verdict | None:
-    """Return "doubtful" for a formula ``m*g*l`` if the context states a formula with one more term or factor; else
-    None.
+    """Return "doubtful" if a claim lacks one term or factor of a known formula that its context states; else None.
+
+    For instance, ``m*g*l`` lacks the factor ``sin(theta)`` of ``m*g*l*sin(theta)``.
     """
     context = claim.context
     own_meaning = context.meaning_of(quantity)
@@ -296,8 +303,10 @@ def _is_open(decision: Decision) -> bool:
 def _different(
     claim: Claim, named: NamedFormula, verdict: Verdict, decisions: Sequence[tuple[Meant, Decision]]
 ) -> Verdict:
-    """Return the verdict "false" on a claim that differs from all known formulas that its context can mean."""
-    # each formula with the decision that the claim differs from it
+    """Return the verdict "false" on a claim that differs from all known formulas whose names fit its context.
+
+    ``decisions`` are pairs: such a formula, and the decision that the claim differs from it.
+    """
     (candidate, decision), *_ = decisions
     diagnosis, repairs = verdict.diagnosis, verdict.repairs
     is_solved = named.solve is None or named.solve(named.formula) == named.formula
@@ -318,7 +327,11 @@ def _different(
 
 
 def _different_repairs(repairs: Sequence[tuple[Repair, ...]]) -> tuple[Repair, ...]:
-    """Return at most three repairs: the best one towards each known formula, then the second-best ones."""
+    """Return at most three repairs with different texts: the first repair in each tuple, then the second ones, and so
+    on.
+
+    Each tuple of ``repairs`` has the repairs that make a claim equal to one known formula, the best repair first.
+    """
     in_turn = [repair for rank in zip_longest(*repairs) for repair in rank if repair is not None]
     return tuple({repair.text: repair for repair in in_turn}.values())[:MOST_REPAIRS]
 

@@ -35,13 +35,15 @@ __all__ = ["determinants", "verdict_on_determinant"]
 PHI, THETA, PSI = symbols.angles
 
 OTHER_MATRICES = re.compile(r"[RACQIUOP]\w*")
-"""Names of rotations, unit matrices and inertia tensors, whose determinants are other formulas."""
+"""Pattern of usual names of rotations, unit matrices and inertia tensors: a claim about the determinant of such a
+matrix is not about a rate Jacobian."""
 
 SECOND_ANGLE = re.compile(r"(var)?theta(_?[2yn])?|Theta|beta|pitch|(q|alpha|phi|e)_?2")
-"""Names of the second of three Euler angles."""
+"""Pattern of the names of the second of three Euler angles."""
 
 MOST_REPAIRS, MOST_SEQUENCES = 3, 4
-"""The largest number of repairs of a claim, and of sequences that are named for one formula."""
+"""The largest number of repairs of a claim, and of Euler sequences that a verdict names because their rate Jacobians
+have the claimed determinant."""
 
 
 @cache
@@ -59,10 +61,10 @@ def determinants() -> dict[str, Expr]:
 
 
 def verdict_on_determinant(claim: Claim, repair: bool) -> Verdict | None:
-    """Return the verdict on a claim ``det T = f(theta)`` about an undefined matrix T, which may be a rate Jacobian.
+    """Return the verdict on a claim ``det T = f(theta)`` about a matrix T without a definition; None for other claims.
 
-    It is "recognised" if f is the determinant of a rate Jacobian, and "doubtful" if ``repair`` and one edit makes it
-    one. Return None for all other claims.
+    The verdict is "recognised" if f is the determinant of a rate Jacobian, or its negative. It is "doubtful" if
+    ``repair`` is true and one edit makes f such a determinant.
     """
     assert claim.relation is not None
     generic = {*matrices_of_entries(claim.define)}
@@ -79,7 +81,11 @@ def verdict_on_determinant(claim: Claim, repair: bool) -> Verdict | None:
 
 
 def _is_determinant(tree: Node, generic: set[str]) -> bool:
-    """Return whether a tree is ``det(T)`` for an undefined matrix T that may be a rate Jacobian."""
+    """Return whether a tree is ``det(T)`` for a matrix T that may be a rate Jacobian.
+
+    T must be in ``generic``, the matrices that the claim does not define, and must not be a usual name such as R of
+    another matrix.
+    """
     return tree.kind == "call" and tree.value == "det" and tree.args[0].kind == "name" and (
         str(tree.args[0].value) in generic and not OTHER_MATRICES.fullmatch(str(tree.args[0].value))
     )  # fmt: skip

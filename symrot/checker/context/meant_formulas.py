@@ -1,4 +1,8 @@
-"""The known formulas that a claim in its context can mean, in the letters of the claim."""
+"""The known formulas whose names fit a claim in its context, written in the letters of the claim.
+
+A name such as "moment of inertia of a thin rod about an end" fits if it does not contradict the context, and if the
+context or the claim's quantity states each of its words; only the point of the body may be left open.
+"""
 
 import re
 from collections.abc import Iterator, Mapping, Sequence
@@ -25,10 +29,12 @@ from symrot.exact.printing import as_text
 __all__ = ["ANGLE", "Meant", "all_known", "assignments_of", "meant_by", "with_letters"]
 
 MOST_ASSIGNMENTS = 24
-"""The largest number of assignments of a claim's letters to the symbols of one derived formula that are decided."""
+"""The largest number of assignments of a claim's letters to the symbols of one known formula; the claim is compared
+with the formula for each assignment."""
 
 MOST_CHOICES = 10_000
-"""The largest number of choices of symbols for letters that are tested for agreement with the axes."""
+"""The largest number of assignments of a claim's letters to the symbols of one known formula that are tested; most
+contradict the context or the indices, as I_x for the moment about y."""
 
 ANGLES = tuple(Symbol(symbol.name, real=True) for symbol in (*symbols.angles, *symbols.angle_rates))
 
@@ -59,12 +65,12 @@ USUAL: tuple[tuple[str, str], ...] = (
     ("I_zz", "I_?(zz|z|33|3)"), ("I_xy", "I_?(xy|12)"), ("I_xz", "I_?(xz|13|zx)"), ("I_yz", "I_?(yz|23)"),
     ("q([0-3])", r"q_?[0-3]"), ("rho", "rho"), ("e", "e"),
 )  # fmt: skip
-"""Pairs of patterns: symbols of derived formulas, and the letters that books use for them."""
+"""Pairs of patterns: one for symbols of derived formulas, and one for the letters that books use for these symbols."""
 
 
 @dataclass(frozen=True)
 class Meant:
-    """A known formula that a claim may mean, in the letters of the claim.
+    """A known formula whose name fits a claim in its context, written in the claim's letters.
 
     Attributes
     ----------
@@ -92,7 +98,12 @@ class Meant:
 
 
 def meant_by(context: Context, value: Any, quantity: str, stated: str) -> Iterator[Meant]:
-    """Yield each known formula that ``quantity`` can mean, in the letters of the claim's formula ``value``."""
+    """Yield the known formulas whose names fit a claim about ``quantity``, in the letters of the claim's formula
+    ``value``.
+
+    ``stated`` are words that the quantity's name implies, such as "first component" for omega_1. A formula is yielded
+    once for each assignment of the letters.
+    """
     shape = value.shape if is_matrix(value) else None
     own = atoms_of(list(value) if shape else [value]) - {time}
     for known in all_known():
@@ -108,7 +119,6 @@ def meant_by(context: Context, value: Any, quantity: str, stated: str) -> Iterat
             continue
         target = with_letters(context, target)
         is_specific = bool(bodies_of_formula(known.name)) or bool(context.sequence and context.sequence in known.name)
-        # a formula is yielded once for each assignment of letters
         for mapping in islice(assignments_of(context, target, own, quantity, known, is_specific), MOST_ASSIGNMENTS):
             renamed = target.xreplace({**_unused_rates(mapping, own), **mapping})
             used = target.free_symbols

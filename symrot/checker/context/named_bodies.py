@@ -26,23 +26,24 @@ BODIES_OF_WORD = {
     **dict.fromkeys(("box", "cube"), ("box", "box")), "shell": ("spherical shell", "shell"),
     **{name: (name, name) for name in ("cylinder", "cone", "plate", "ellipsoid", "torus")},
 }  # fmt: skip
-"""A word in a name -> the body that it means, and a part of the names of formulas that it may mean."""
+"""Maps a word in the name of a quantity to a pair: the body that it means, and a word in the names of formulas for it.
+"""
 
 PLACE_OF_WORD = {
     "end": END, **dict.fromkeys(("centre", "center", "cm", "com", "CM", "G"), "the centre of mass"),
     "tip": "the tip", "apex": "the tip", "rim": "a point of the rim",
 }  # fmt: skip
-"""A word in a name -> the point through which the axis goes."""
+"""Maps a word in the name of a quantity to the point of the body through which the axis goes."""
 
 HALVES = ("a", "l")
 """Letters that some books use for half the length of a rod."""
 
 
 def of_named_body(claim: Claim, named: NamedFormula, verdict: Verdict, judge: Judge) -> Verdict:
-    """Return the verdict on a claim about ``I_rod``, ``I_end`` and the like, for which only a formula of this body and
-    point is right; return ``verdict`` for other claims, and if it is "true", "false" or "doubtful".
+    """Return the verdict on a claim about a quantity whose name says the body or point, such as ``I_rod`` or ``I_end``.
 
-    ``judge`` returns the verdict on a claim in its context.
+    Only a formula for this body and point is right. Return ``verdict`` unchanged for other names, and if it is "true",
+    "false" or "doubtful". ``judge`` returns the verdict on a claim in its context.
     """
     match = re.fullmatch(r"[IJ]_?(\w+)", named.name)
     words = match[1].split("_") if match else []
@@ -69,7 +70,13 @@ def _body_of(verdict: Verdict) -> str:
 
 
 def _judged(claim: Claim, named: NamedFormula, verdict: Verdict, stated: Context, judge: Judge) -> Verdict:
-    """Return the verdict "recognised" or "doubtful" on a claim in the context that its quantity's name states."""
+    """Return "recognised" or "doubtful" if a claim is right, or has a repair, for the body and point that a name
+    states.
+
+    ``stated`` is the context that the name of the claim's quantity states; ``judge`` returns the verdict on the claim
+    in this context. Otherwise return ``verdict``, as "definition" if it recognised the formula of another body or
+    point.
+    """
     other = judge(replace(claim, context=stated), named)
     if other.verdict in ("true", "recognised"):
         return replace(other, verdict="recognised")
@@ -86,7 +93,7 @@ def _judged(claim: Claim, named: NamedFormula, verdict: Verdict, stated: Context
 
 
 def _not_of_name(named: NamedFormula, verdict: Verdict) -> Verdict:
-    """Return "definition" for a claim with the formula of another body or point than its quantity's name says."""
+    """Return ``verdict`` as "definition", since a quantity's name says another body or point than its formula."""
     reason = (
         f"the formula is the {verdict.recognised_as[0].name}; but the name {named.name} is for another body or point"
     )

@@ -48,14 +48,14 @@ def with_sides(verdict: Verdict) -> Verdict:
 
 
 def with_tangent(context: Context, verdict: Verdict) -> Verdict:
-    """Return the verdict, with "recognised" for "true" if the claim holds for a tangent that is normal to the disk's
-    plane.
+    """Return the verdict, with "recognised" for "true" if "about a tangent" is read as a line normal to a disk's plane.
+
+    Most authors mean a tangent in the plane of the disk or ring.
     """
     places = {context.place, *(meaning.place for meaning in context.meanings)}
     normal = all(known.name.endswith("rim, z axis") for known in verdict.recognised_as)
     if TANGENT not in places or not normal or (context.body and context.body.axes):
         return verdict
-    # the words "about a tangent" usually mean one in the plane of the body
     note = "guessed, not stated: the tangent is normal to the plane of the body, not in it"
     return replace(verdict, verdict="recognised", notes=(*verdict.notes, note))
 

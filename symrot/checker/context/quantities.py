@@ -193,7 +193,8 @@ PLACES: tuple[tuple[str, tuple[str, ...], tuple[str, ...]], ...] = (
     ("about the fixed point", ("pivot", "fixed point", "point o", "o", "pivot o"), ()),
     ("about the fixed axis", ("fixed axis", "one axis"), ("about one axis",)),
 )  # fmt: skip
-"""Points through which axes go: the title, words for it after "about", and words for it in names of formulas."""
+"""Triples for points through which axes go: the title, words for the point after "about", and words for it in the names
+of formulas."""
 
 ROUND = (
     "a cylinder", "a hollow cylinder", "a thin tube", "a annulus", "a cone", "a frustum", "a disk", "a ring", "a torus",
@@ -234,8 +235,9 @@ LINES: dict[str, tuple[tuple[str, ...], dict[str, tuple[str, str]]]] = {
         ("base", "base line", "base edge"), {"a plate": (CORNER, "xy"), "a triangular plate": (CORNER, "x")}
     ),
 }  # fmt: skip
-"""Lines that serve as axes: the title, and words for it after "about". For each body with such a line follow its
-point in the names of formulas, and the axes that lie along it."""
+"""Maps the title of a line that serves as an axis to a pair: words for the line after "about", and a dictionary of the
+bodies that have such a line. In it, the value of "a disk" is a pair: the point of the disk that the names of formulas
+state, and the letters of the coordinate axes that lie along the line there, such as "xy"."""
 
 UNUSED = frozenset({
     "a", "an", "the", "of", "its", "their", "any", "some", "this", "that", "is", "are", "and", "in", "by",
@@ -300,7 +302,8 @@ def place_of_words(words: str, formulas: Collection[str] = ()) -> tuple[str, str
 
 
 _BEFORE_PLACE = r"(through|about|hung at|hung from|at)(?: (?:any|some|one|either)(?: of)?(?! axis))?"
-"""Words before the place of an axis; "one axis" means the fixed axis of a body, not its own."""
+"""Pattern of the words before the place of an axis, such as "about one of". The word "one" before "axis" belongs to the
+place: "about one axis" means the fixed axis of a body, "about axis" its axis of symmetry."""
 
 _END_OF_PLACE = r"(?![\w-])(?! (?:of|in|through|perpendicular|normal|parallel|along|at|inclined|tilted)\b)"
 

@@ -54,9 +54,10 @@ Judge = Callable[[Claim, NamedFormula], Verdict]
 
 
 def by_other_sizes(claim: Claim, named: NamedFormula, verdict: Verdict, judge: Judge) -> Verdict:
-    """Return "recognised" for a moment of inertia that is right with other dimensions; otherwise ``verdict``.
+    """Return "recognised" for a moment of inertia that is right in terms of other lengths, such as a diameter.
 
-    ``judge`` returns the verdict on a claim.
+    For instance, ``m*d^2/8`` is right for a disk with the diameter d. Otherwise return ``verdict``. ``judge`` returns
+    the verdict on a claim.
     """
     body = claim.context.body
     if verdict.verdict not in TRIED or not MOMENT.fullmatch(named.name) or (body is not None and body.letters):
@@ -71,7 +72,6 @@ def by_other_sizes(claim: Claim, named: NamedFormula, verdict: Verdict, judge: J
             or (body is not None and f" {body.kind.shape.replace('_', ' ')} " not in size.bodies)
         ):
             continue
-        # m*d^2/8 is right for a disk if d is its diameter
         formula = _in_dimensions(named.formula, size)
         other = judge(
             claim.with_relation(("==", named.side, formula), alternatives=()), named._replace(formula=formula)

@@ -30,7 +30,7 @@ FRAMES = {
     "body": ("body", "body frame", "body axes", "body-fixed", "b", "moving"),
     "space": ("space", "space frame", "space axes", "space-fixed", "s", "inertial", "inertial frame", "fixed"),
 }
-"""Maps a frame to words for it."""
+"""Maps "body" and "space" to the words for the frame."""
 
 _FRAME_WORDS = (("body", r"in (the )?body( frame| axes)?"), ("space", r"in (the )?(space|inertial)( frame| axes)?"))
 
@@ -41,7 +41,8 @@ SEQUENCE_WORDS = {
 """Maps a usual name, such as yaw-pitch-roll, to the sequence of Euler angles."""
 
 RATES = ("rad/s", "rad/s^2", "W", "m/s", "m/s^2", "")
-"""The units of quantities that may be rates."""
+"""Units of quantities that may be rates of change; "" is for quantities without a unit. If the words about x' mean a
+quantity with one of these units, x' is read as the rate of x, otherwise as another name."""
 
 MOST_NAMES = 40
 MOST_NEAREST = 3
@@ -120,7 +121,12 @@ def _original(rest: str, words: str) -> str:
 
 
 def _readings_of_name(part: str, prefix: str, is_rate: bool = False) -> Iterator[str]:
-    """Yield the names that a typed name can mean: ``x_dot`` itself, and ``dx``, the rate of x."""
+    """Yield the names that ``part``, a typed name, can mean: for ``x_dot``, the name x_dot itself and dx, the rate of
+    x.
+
+    For ``x'``, yield dx if ``is_rate``, else x_prime. Raise InputError, with a message that begins with ``prefix``, if
+    ``part`` is no name.
+    """
     bare = part.rstrip("'\u2032")
     primes = len(part) - len(bare)
     latex = "\\" in bare or "{" in bare
@@ -150,8 +156,8 @@ def _frame_in(words: str) -> tuple[str, str]:
 
 
 _NO_AXIS_OF = ("", r"(?! (?:in|through|perpendicular|normal|parallel|at)\b)")
-"""What may not follow a phrase that ends with "axis" (second pattern): "axis in the plane" is not the axis of a
-body."""
+"""Two patterns for what follows a phrase that names a quantity: an empty one, and for a phrase that ends with "axis"
+one that excludes words such as "in": "axis in the plane" does not name the axis of a body."""
 
 
 def _quantity(plain: str, words: str, prefix: str) -> tuple[Quantity, str]:

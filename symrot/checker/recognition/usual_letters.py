@@ -23,7 +23,7 @@ LETTERS = {
     "s": r"[tTP]\w*|tau|Delta_t", "J": r"[ETKVUW]\w*", "N m/rad": r"(k|c|kappa)(_\w+)?", "m, of gyration": r"[kri]\w*",
     "1": r"([nkeulqpsgcabdr]|beta|eps|epsilon|varepsilon|eta|xi|rho|sigma|gamma|lambda|mu|[RACQ]_?[0-9])\w*",
 }  # fmt: skip
-"""Unit of a symbol -> the letters that books use for it; a product of few symbols is recognised in these letters."""
+"""Unit -> pattern of the letters that books use for quantities with this unit, such as m or M for a mass in kg."""
 
 
 def has_usual_letter(known: str, own: str) -> bool:

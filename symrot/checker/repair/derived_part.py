@@ -20,7 +20,7 @@ from symrot.exact.printing import as_text
 __all__ = ["derived_part"]
 
 EVALUATED = ("diff", "integrate")
-"""Functions that a correction must not contain, since it shows their value."""
+"""Functions that a derived formula must not contain: it should show their result, such as 2*x for diff(x^2, x)."""
 
 
 def derived_part(claim: Claim, place: str) -> Node | None:

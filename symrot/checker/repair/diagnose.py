@@ -51,12 +51,15 @@ A claim that takes more than a quarter of this number by itself gets no repairs.
 """
 
 TELLING = frozenset(FAULT_DESCRIPTIONS) - {"two_faults", "extra_term", "wrong_symbol", "missing_term"}
-"""The faults that are named even if the only repair makes both sides the same formula; this repair is not offered."""
+"""Codes of the faults that a diagnosis may take from an edit that makes both sides the same formula.
+
+Such an edit shows the probable fault, but is not offered as a repair: the edited claim says nothing.
+"""
 
 AS_NEAR = 0.35
-"""How much more than the nearest repair the same repair, written in another way, may cost.
+"""Largest difference in cost between the cheapest repair and a repair to the same formula written in another way.
 
-If a cheaper edit makes both sides the same formula, a repair may cost at most this much more than that edit.
+A repair also costs at most this much more than the cheapest edit that makes both sides the same formula.
 """
 
 MOST_COSTLY = 9.0

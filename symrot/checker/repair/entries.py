@@ -12,11 +12,11 @@ from symrot.checker.repair.points import UndefinedValue, agree, entries_of
 __all__ = ["by_entries", "merged"]
 
 MOST_PAIRS_OF = 60
-"""The number of edits of an entry, the cheapest ones, that are tried in pairs."""
+"""The number of edits of one wrong matrix entry, the cheapest ones, that are combined in pairs to correct the entry."""
 
 
 def by_entries(numeric: NumericFilter) -> list[Candidate]:
-    """Return repairs of a written-out matrix that is a side of the claim; they edit each wrong entry separately."""
+    """Return repairs of a written-out matrix on one side of the claim; each edits every wrong entry by itself."""
     candidates: list[Candidate] = []
     # the other side has the values that the entries should have
     references = {"right": numeric.left, "left": numeric.right}

@@ -114,9 +114,10 @@ class NumericFilter:
         return node.kind not in ("index", "list", "number") and any(map(self.is_matrix, node.args))
 
     def sensible(self, place: str, tree: Node) -> bool:
-        """Return whether ``tree`` may become the side or definition ``place``.
+        """Return whether ``tree`` may replace a side or definition of the claim.
 
-        No mere number may replace a formula, and a definition may use neither its own name nor a later one.
+        ``place`` is "left", "right" or the name of the definition. No mere number may replace a formula, and a
+        definition may use neither its own name nor that of a later definition.
         """
         if place in SIDES:
             return is_nontrivial(tree) or not is_nontrivial(self.tree_at(place))

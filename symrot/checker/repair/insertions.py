@@ -1,6 +1,6 @@
 """Repairs that insert or exchange a part: a missing term, a missing matrix factor, another definition.
 
-A missing term is the exact difference of the sides.
+A missing term is computed exactly, as the difference of the two sides of the claim.
 """
 
 from collections.abc import Iterator, Mapping, Sequence
@@ -24,11 +24,12 @@ from symrot.exact.ring.ring import FormulaRing, as_zero
 __all__ = ["exchanged_definitions", "missing_matrices", "missing_terms"]
 
 MOST_BRACKETS = 12
+"""Largest number of parts of a matrix entry or side to which a missing term is added: ``a*(b + m)`` for ``a*b``."""
+
 MOST_BRACKETS_OF_LARGE = 2
+"""The same number as ``MOST_BRACKETS``, for an entry or side with at least ``LARGE`` nodes."""
+
 LARGE = 300
-"""The largest number of brackets of an entry to which a missing term may be added; ``MOST_BRACKETS_OF_LARGE`` is for an
-entry of ``LARGE`` nodes or more.
-"""
 
 MOST_TERMS = 60
 """The largest number of terms in a sum that is factored to become one term."""
@@ -37,7 +38,7 @@ MOST_LETTERS = 240
 """The largest number of characters in a term that a repair may add."""
 
 MOST_TERMS_READ, MOST_ROOTS_READ = 1000, 12
-"""A difference of the sides with more terms or roots is not simplified to a single missing term."""
+"""Largest numbers of terms and of roots in the difference of the two sides, if a missing term is sought in it."""
 
 
 def missing_terms(numeric: NumericFilter) -> Iterator[Candidate]:
@@ -138,7 +139,7 @@ def missing_matrices(numeric: NumericFilter) -> Iterator[Candidate]:
 
 
 def exchanged_definitions(numeric: NumericFilter) -> Iterator[Candidate]:
-    """Yield repairs of a side that put the name of another definition in place of the name of one."""
+    """Yield repairs that replace the name of a definition in a side by the name of another definition of the claim."""
     used = [name for name in numeric.definitions if name not in numeric.symbols]
     for place in numeric.sides_to_edit:
         tree = numeric.tree_at(place)

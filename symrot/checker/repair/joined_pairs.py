@@ -18,7 +18,7 @@ MOST_JOINED = 400
 """The largest number of pairs of edits that are tried, the cheapest first."""
 
 DIGITS = 8
-"""The number of decimals to which effects are compared, in units of the largest effect that a pair must have."""
+"""Number of decimals to which effects of edits are compared, relative to the largest number in the common effect."""
 
 Values = tuple[float, ...]
 
@@ -51,11 +51,19 @@ def pair_of(numeric: NumericFilter, first: Change, second: Change) -> tuple[Chan
 
 
 Effects = tuple[Values, dict[int, Values]]
-"""The effect that a pair must have together, and the effect of each single edit by its number."""
+"""The common effect that two edits must have to make the sides equal, and {index of an edit: its effect}.
+
+The effect of an edit is how much it reduces left - right, for each matrix entry, or the factor by which it divides
+left/right.
+"""
 
 
 def _differences(numeric: NumericFilter, changes: Sequence[Change]) -> Effects:
-    """Return left - right at the first test point, and {number of an edit: how much this edit reduces left - right}."""
+    """Return left - right of the claim at the first test point, and {index in ``changes``: effect of the edit}.
+
+    The effect is how much the edit reduces left - right, for each matrix entry. Edits that leave a side without a value
+    have no effect here.
+    """
     point = numeric.points[0]
     whole = tuple(numeric.differences(point, ()))
     effects: dict[int, Values] = {}
@@ -72,9 +80,10 @@ def _differences(numeric: NumericFilter, changes: Sequence[Change]) -> Effects:
 
 
 def _quotients(numeric: NumericFilter, changes: Sequence[Change]) -> Effects:
-    """Return left/right at the first test point, and {number of an edit: the factor by which it divides left/right}.
+    """Return left/right of the claim at the first test point, and {index in ``changes``: factor of the edit}.
 
-    Both are empty for matrices, and if a side is zero.
+    The edit divides left/right by this factor. Both results are empty for matrices, and if a side of the claim is zero.
+    Edits of definitions have no factor here.
     """
     point = numeric.points[0]
     left, right = (entries_of(side) for side in numeric.sides(point, ()))
@@ -95,11 +104,11 @@ def _quotients(numeric: NumericFilter, changes: Sequence[Change]) -> Effects:
 
 
 def _completing(effects: Effects, rest: Callable[[float, float], float]) -> Iterator[tuple[int, int]]:
-    """Yield the numbers of two edits that together make both sides equal.
+    """Yield pairs of indices of two edits that together make both sides equal at the first test point.
 
-    ``effects`` is the result of `_differences` or `_quotients`.
+    ``effects`` is the result of `_differences` or `_quotients`. ``rest(w, e)`` is the effect that the second edit must
+    have if the first one has e and both together w: w - e for differences, w/e for quotients.
     """
-    # rest(w, e): what the second edit must give if the first gives e: w - e for differences, w/e for quotients
     whole, single = effects
     scale = max(map(abs, whole), default=0.0)
     if not scale:

@@ -51,13 +51,16 @@ from symrot.kinematics.hamilton import hamilton
 __all__ = ["Point", "UndefinedValue", "agree", "entries_of", "points"]
 
 DERIVATIVES = 6
-"""The number of derivatives of each function of time in a point, the value included."""
+"""The number of values that a point has for each function of time: the function's own and those of its derivatives."""
 
 HEAVIEST = 3**5
-"""A point of more than this weight is not copied with dual numbers again: derivatives up to the sixth are possible."""
+"""Largest weight of a point that is copied with dual numbers, which triples the weight for each nested derivative.
+
+So at most six derivatives inside each other are possible.
+"""
 
 GAUSS = {1: 20, 2: 18, 3: 16}
-"""The number of nodes of Gauss-Legendre quadrature in each direction, by the number of nested integrals."""
+"""Number of nested integrals, 3 for more -> number of nodes of Gauss-Legendre quadrature for each integral."""
 
 
 # -- trees ------------------------------------------------------------------------------------------------------------
@@ -251,10 +254,13 @@ def _differentiated(point: Point, formula: Node, variables: Sequence[Node]) -> A
 
 
 def _integrated(point: Point, integrand: Node, ranges: Sequence[Node]) -> Any:
-    """Return the integral of ``integrand`` over a box at a point, by Gauss-Legendre quadrature."""
+    """Return the integral of ``integrand`` over ``ranges`` at a test point, by Gauss-Legendre quadrature.
+
+    Each range is a list (variable, lower limit, upper limit), the outermost first. The test point gives the values of
+    all other symbols.
+    """
     import numpy as np  # for integrals and hypotheses alone, since its import takes longer than most checks
 
-    # ranges: (variable, low, high), those of the outer variables first
     nodes, weights = np.polynomial.legendre.leggauss(GAUSS[min(len(ranges), 3)])
     inner, total = point, np.ones((1,) * len(ranges))
     for axis, part in enumerate(ranges):
@@ -360,9 +366,9 @@ def points(
 ) -> list[Point]:  # fmt: skip
     """Return random test points, the same in every run, at which the hypotheses hold up to errors of 1e-12.
 
-    There may be fewer than ``count`` points. Symbols have values from 0.3 to ``most``, before the hypotheses move them.
+    There may be fewer than ``count`` points, since Newton's method may fail. Symbols have values from 0.3 to ``most``,
+    before the hypotheses move them. ``remembered`` has the ids of the trees whose values each point stores.
     """
-    # remembered: ids of the trees whose values a point stores; a point is left out if Newton's method fails
     accepted = []
     for seed in range(3 * count):
         source = Random(seed)

@@ -22,23 +22,30 @@ from symrot.checker.repair.points import Point, UndefinedValue, entries_of
 __all__ = ["solutions"]
 
 ONES = (1, -1)
-"""Numbers that are easily forgotten in a sum."""
+"""The only numbers that a repair may add to a formula as a missing term: a term 1 is easily forgotten."""
 
 HOLE = Node("name", "?")
 """The unknown part of a formula, under a name that no text can contain."""
 
 CLOSE = 1e-8
 """The largest relative difference between values that are taken to be equal."""
+
 MOST_ATOMS, MOST_SUMS, MOST_PRODUCTS = 24, 24, 4000
-"""The largest numbers of symbols and functions, and of brackets, from which products are made, and of products."""
+"""Largest numbers, in a `Vocabulary`: of symbols and functions, of sums in brackets, of products of the symbols and
+functions.
+"""
+
 MOST_MATRICES, MOST_COLUMNS = 40, 5
-"""The largest numbers of matrices of which a multiple is added to another one, and of vectors in dot products."""
+"""Largest number of matrices whose multiples are tried as a missing term, and of named vectors in scalar products."""
+
 LARGEST_RATIO = 60
+"""Largest denominator of a rational number in a repair, such as 2/3 in a factor that was forgotten."""
+
 LARGEST_OF_SIDE = 1000
-"""The largest denominator of a rational factor that corrects a part; the second is for a side or a term of a side."""
+"""The same limit for the factor of a whole side, or of a term or factor that is not nested deeper in a side."""
 
 Values = tuple[float, ...]
-"""One value for each point."""
+"""The values of a formula, one for each test point."""
 
 
 # -- the vocabulary of a claim ----------------------------------------------------------------------------------------

@@ -15,9 +15,8 @@ MOST_TERMS = 80
 
 
 def vector_edits(numeric: NumericFilter) -> Iterator[Candidate]:
-    """Yield the repairs that square a matrix, take a matrix for its square, or add a vector times a letter to a sum.
-
-    The order is side by side, not by cost. All are true at the test points.
+    """Yield repairs that replace a matrix M by M^2, or a power of M by M, or add a vector times a letter to a sum.
+    Repairs of the right side come before those of the left side, whatever they cost. All are true at the test points.
     """
     if not numeric.matrix_names:
         return
@@ -31,7 +30,10 @@ def vector_edits(numeric: NumericFilter) -> Iterator[Candidate]:
 
 
 def _squares(tree: Node, numeric: NumericFilter) -> Iterator[tuple[Path, Node, str]]:
-    """Yield (path, M^2, code) for each matrix M in a tree, and (path, M, code) for each square of a matrix."""
+    """Yield (path, new part, "exponent") with M^2 for each matrix M in a tree, and with M for each power of a matrix M.
+
+    The path leads to the part that the new part replaces; "exponent" is the code of the corrected fault.
+    """
     squares = [path for path, node in walk(tree) if node.kind == "power"]
     for path, node in walk(tree):
         if node.kind == "power" and numeric.is_matrix(node.args[0]):
@@ -41,7 +43,10 @@ def _squares(tree: Node, numeric: NumericFilter) -> Iterator[tuple[Path, Node, s
 
 
 def _terms(tree: Node, numeric: NumericFilter) -> Iterator[tuple[Path, Node, str]]:
-    """Yield (path, sum, code) for each sum of vectors in a tree, with one more term: a vector times a letter."""
+    """Yield (path, new sum, "missing_term") for each sum of vectors in a tree and each term that may be missing in it.
+
+    The term is a letter times a vector, with either sign; "missing_term" is the code of the corrected fault.
+    """
     vectors = [Node("name", name) for name in sorted(numeric.matrix_names)]
     scalars = [Node("name", name) for name in numeric.names if name not in numeric.matrix_names]
     letters = {node.value for _, node in walk(tree) if node.kind == "name"}

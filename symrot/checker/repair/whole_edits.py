@@ -19,22 +19,22 @@ WHOLE = (
     "overall_sign", "frame_body_space", "active_passive_transpose", "commutator_order", "quaternion_product_order",
     "wrong_sequence_type", "inertia_product_sign",
 )  # fmt: skip
-"""The faults that change a whole side or definition."""
+"""Codes of the faults that usually change all values of a side or definition, such as a transposed rotation."""
 
 MOST_WHOLE = 14
-"""The largest number of faults of whole sides that are undone, the cheapest first."""
+"""The largest number of edits against a fault in ``WHOLE`` that are tried as the first of two edits."""
 
 MOST_EDITS = 3000
-"""The largest number of edits of one side or definition that are tried after a fault of a whole side is undone."""
+"""The largest number of single edits of one side or definition that are tried as the second edit, after each first."""
 
 MOST_PIECES_AFTER = 240_000
-"""The largest number of nodes of trees that may be evaluated after a fault of a whole side is undone."""
+"""The largest number of nodes of trees that may be evaluated in the search for the second edit, after each first."""
 
 
 def after_whole_edits(numeric: NumericFilter, changes: Sequence[Change]) -> Iterator[Candidate]:
-    """Yield repairs with two changes: one of ``changes`` that concerns a whole side or definition, and another change.
+    """Yield repairs with two changes: one of ``changes`` against a fault in ``WHOLE``, and one against another fault.
 
-    All are true at the test points.
+    All repairs are true at the test points.
     """
     for first in islice((change for change in changes if change.edit.code in WHOLE), MOST_WHOLE):
         claim = numeric.edited([first])

@@ -23,7 +23,8 @@ __all__ = ["substitutions_of_entries", "substitutions_of_rates"]
 
 FRAMES = ("body", "space")
 COMPONENT = re.compile(r"(?:omega|w|Omega)_?([1-3xyz])(?:_prime)?|([pqr])")
-"""A component of the angular velocity, with the groups index, and letter of an aircraft's rate."""
+"""Pattern of the name of a component of the angular velocity. Group 1 is the index, as in omega_3; group 2 is p, q or
+r, the letters of the components for an aircraft."""
 
 AXES = {letter: axis for axis, letters in enumerate(("1xp", "2yq", "3zr")) for letter in letters}
 

@@ -25,7 +25,8 @@ __all__ = ["TENSOR_OF_INTEGRALS", "is_tensor_of_integrals", "substitutions_of_gy
 
 INTEGRAL = re.compile(r"integral_[xyz]{2}")
 ENTRY = re.compile(r"[IJP]_?([xyz1-3])([xyz1-3])?")
-"""A moment or a product of inertia; its groups are the axes."""
+"""Pattern of the name of a moment or product of inertia, such as I_xy. Groups 1 and 2 are the axes; for I_x, group 2 is
+None."""
 
 TENSOR_OF_INTEGRALS = Identification(
     "inertia tensor as an integral over the body, products of inertia with the minus sign", "", {},

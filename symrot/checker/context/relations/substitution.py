@@ -114,8 +114,11 @@ def by_substitution(
 
 
 def _recognised(context: Context, verdict: Verdict, true: Sequence[Substitution], is_complete: bool) -> Verdict:
-    """Return the verdict "true" if an interpretation in ``true`` assumes nothing and ``is_complete``; else
+    """Return "true" if a claim with a context is proven by a stated interpretation and ``is_complete``; else
     "recognised".
+
+    ``true`` are the interpretations under which the claim holds; a stated one has no guess. ``is_complete`` says that
+    all interpretations of the claim were tried.
     """
     stated = [way for way in true if not way.guess]
     readings = tuple(way.identification for way in (stated or true)[:MOST_READINGS])

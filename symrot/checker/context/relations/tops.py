@@ -33,7 +33,7 @@ COORDINATES: tuple[tuple[str, Expr], ...] = (
     (r"A|I|[IJ]_?([012tx]|xx|yy|perp)|I_prime", A), (r"C|[JI]|[IJ]_?([3sz]|zz)", C),
     ("m|M", MASS), ("g", GRAVITY), (r"l|ell|h|a|R|d|r|[lrh]_?(G|cm|C)|z_?(G|C|cm)", ARM), ("W|mg", WEIGHT),
 )  # fmt: skip
-"""Patterns of letters, each with the independent quantity that the letter can be."""
+"""Pairs of a pattern of letters and the independent quantity that such a letter can be."""
 MOMENT_LETTERS = {symbol: letters for letters, symbol in COORDINATES if symbol in (A, C)}
 
 QUANTITIES: tuple[tuple[str, tuple[str, ...]], ...] = (
@@ -45,10 +45,10 @@ QUANTITIES: tuple[tuple[str, tuple[str, ...]], ...] = (
     ("dE|E_prime|E_?1", ("energy without the energy of the spin",)), ("L", ("Lagrangian",)),
     ("[VU]_?eff", ("effective potential", "effective potential without the energy of the spin")),
 )  # fmt: skip
-"""Patterns of letters, each with the quantities of a top that the letter can be."""
+"""Pairs of a pattern of letters and the quantities of a top that such a letter can be."""
 
 EVIDENT = ("momentum of precession", "momentum of spin", "effective potential", "spin along the axis")
-"""Quantities that, next to the angle theta, only a top has."""
+"""Titles of quantities of a top: a claim with such a quantity and with the angle theta is about a top."""
 CONJUGATE = re.compile("p_?(phi|varphi|theta|vartheta|psi)")
 
 
@@ -154,7 +154,10 @@ def _formulas(load: Expr) -> dict[str, Expr]:
 def _of_steady_precession(
     names: Mapping[Expr, str], values: Mapping[Expr, Expr], sides: Sequence[Expr], load: Expr
 ) -> Iterator[Substitution]:
-    """Yield the Substitution for a claim ``phi' = f``: the condition of steady precession with f for phi', and zero."""
+    """Yield the Substitution for a claim ``phi' = f`` about steady precession, with an equation in place of the claim.
+
+    This equation is Lagrange's equation for constant theta, with f in place of phi'.
+    """
     for side, formula in (sides, sides[::-1]):
         if values.get(side) != DPHI or side in atoms_of([formula]):
             continue

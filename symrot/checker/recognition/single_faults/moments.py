@@ -11,15 +11,16 @@ from symrot.checker.repair.rows import is_matrix
 __all__ = ["is_shifted_moment", "is_symmetric_body"]
 
 EQUAL_MOMENTS = (("A", "B"), ("B", "C"), ("I_xx", "I_yy"), ("I_yy", "I_zz"))
-"""Moments of inertia that are equal in symmetric bodies: the one whose letter stands for both, and the other one."""
+"""Pairs of moments of inertia that are equal in a symmetric body; the letter of the first one may stand for both."""
 FIRST_EQUAL = (("A", "B"), ("I_xx", "I_yy"))
-"""Those of these pairs that are equal in a body whose axis of symmetry is the third."""
+"""The pairs of ``EQUAL_MOMENTS`` that are equal if the third axis is the axis of symmetry."""
 
 
 def is_symmetric_body(absent: str, letter: str, renaming: dict[str, str | None], times: int) -> bool:
-    """Return whether a claim's ``letter`` may stand for two equal moments of inertia: A, and ``absent`` = B.
+    """Return whether a claim may use one letter for two equal moments of inertia, as A in place of both A and B.
 
-    ``times`` is the number of times that the letter occurs in the claim's formula.
+    ``absent`` is the known formula's symbol that the claim lacks, such as B. ``renaming`` maps the known symbols to the
+    claim's letters. ``letter`` is the claim's letter in question; it occurs ``times`` times in the claim's formula.
     """
     # books write A for A = B; B stands for B = C only if it occurs once, as in A p^2 + B (q^2 + r^2)
     equal = EQUAL_MOMENTS if times == 1 else FIRST_EQUAL

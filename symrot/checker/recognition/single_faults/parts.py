@@ -27,7 +27,7 @@ __all__ = [
 CLOSE = 1e-9
 """The largest relative difference between values that count as equal."""
 NEUTRAL = {"sum": 0.0, "product": 1.0}
-"""Kind of a part -> the value of an argument that could as well be left out."""
+"""Kind of an operation -> the value of an argument that has no effect: a term 0, a factor 1."""
 LARGEST = 400
 """The largest numerator and denominator of a rational number that is recognised by its value."""
 
@@ -35,7 +35,7 @@ HALVES = {Fraction(2): "half_angle", Fraction(1, 2): "double_half_angle"}
 """Factor that is missing before an inverse function, as 2 before acos(u) -> the code of this fault."""
 
 Values = tuple[Any, ...]
-"""One value for each point: numbers, or rows of matrices."""
+"""The values of a formula, one for each test point: each is a number, or a matrix as a tuple of rows."""
 
 
 class Part(NamedTuple):
@@ -110,7 +110,7 @@ class Valued:
 
     @cached_property
     def values(self) -> Values | None:
-        """The values of the part, or None if it has no value at one of the points."""
+        """The values of the formula ``node``, one for each of ``points``; None if it has no value at one of them."""
         return values_of(self.node, self.points)
 
     def child(self, path: Path) -> "Valued | None":
@@ -129,7 +129,10 @@ class Valued:
 
     @cached_property
     def arguments(self) -> Sequence[tuple["Valued", "Inward"]]:
-        """The arguments of the part, each with the function from the part's needed values to the argument's."""
+        """Pairs (argument of ``node``, function from the values that ``node`` should have to those of the argument).
+
+        Empty if there is no such function for the kind of ``node``, or if an argument has no value at a test point.
+        """
         inward = _INWARD.get((self.node.kind, self.node.value if self.node.kind == "call" else None))
         children = [Valued(child, self.points, (*self.path, place), self.node.kind)
                     for place, child in enumerate(self.node.args)]  # fmt: skip
@@ -141,13 +144,17 @@ class Valued:
 
 
 Inward = Callable[[Values], Values | None]
-"""The function from the values that a part should have to those that its argument should have, or to None."""
+"""A function from the values that an operation should have at the test points to those that an argument should have.
+
+For a in a + b, the function subtracts the values of b. It returns None if no values of the argument fit.
+"""
 
 
 def _inward(function: "OfArgument", by_point: Sequence[Sequence[Any]], place: int) -> Inward:
-    """Return the function from the needed values of a part to those of its argument number ``place``.
+    """Return the function from the values that an operation should have to those of its argument number ``place``.
 
-    ``by_point`` has the values of all arguments, ``function`` is that of the part in ``_INWARD``.
+    ``by_point`` has the present values of all arguments at each test point. ``function`` is the entry of ``_INWARD``
+    for the operation.
     """
     others = [[value for n, value in enumerate(own) if n != place] for own in by_point]
     if not any(is_matrix(value) for own in by_point for value in own):
@@ -171,8 +178,10 @@ def _inward(function: "OfArgument", by_point: Sequence[Sequence[Any]], place: in
 
 
 def parts(whole: Valued, needed: Values) -> Iterator[Part]:
-    """Yield the parts of a formula whose right values follow from ``needed``, those of the whole formula, each with
-    these values.
+    """Yield parts of a formula, each with the values that give the formula ``whole`` the values ``needed``.
+
+    Only one part is changed at a time: in a + b, a should have the needed value minus b. Parts for which no values can
+    be computed, such as x in sin(x), are left out.
     """
     values = whole.values
     if values is None or [*map(shape_of, values)] != [*map(shape_of, needed)]:
@@ -201,7 +210,11 @@ def _wrong_row(values: Values, needed: Values) -> int | None:
 
 
 def _row_of_matrix(whole: Valued, needed: Values, row: int) -> Iterator[tuple[Valued, Values]]:
-    """Yield (entry, needed values) for the matrix entries in a row, where ``whole`` is a matrix times a column."""
+    """Yield (entry, values that it should have) for entries in one row of the matrix in ``whole``.
+
+    ``whole`` is a matrix times a column; it has the values ``needed`` if one entry changes so. Entries that multiply a
+    zero of the column are left out.
+    """
     factors = whole.node.args
     place, matrix = next(((n, factor) for n, factor in enumerate(factors) if matrix_entries(factor)), (0, whole.node))
     others = [factor for n, factor in enumerate(factors) if n != place]
@@ -257,8 +270,10 @@ def _of_power(arguments: Sequence[Any], place: int, needed: Any) -> Any:
 
 
 OfArgument = Callable[[Sequence[Any], int, Any], Any]
-"""The function from the values of a part's arguments, the index of one of them and the value that the part should have,
-to the value that this argument should have.
+"""A function ``f(arguments, place, needed)`` that solves an operation for one of its arguments at one test point.
+
+``arguments`` are the present values of all arguments, ``needed`` is the value that the operation should have. The
+result is the value that argument number ``place`` should have, or None if there is none.
 """
 
 _INWARD: dict[tuple[str, str | None], OfArgument] = {
@@ -274,7 +289,7 @@ _INWARD: dict[tuple[str, str | None], OfArgument] = {
     ),
     ("call", "abs"): lambda arguments, place, needed: math.copysign(needed, arguments[0]),
 }  # fmt: skip
-"""(kind of a part, name of its function) -> the function that gives the value that an argument of the part needs."""
+"""(kind of an operation, name of its function or None) -> the function that solves the operation for an argument."""
 
 
 def is_superfluous(part: Part) -> bool:
@@ -287,7 +302,7 @@ def is_superfluous(part: Part) -> bool:
 
 
 def is_multiple(part: Part) -> bool:
-    """Return whether a part's needed values are its values times one number other than 1."""
+    """Return whether the values that a part should have are its present values times one number other than 1."""
     first = _ratio(part.needed[0], part.values[0])
     if first is None or abs(first - 1) <= CLOSE:
         return False
@@ -299,7 +314,7 @@ def is_multiple(part: Part) -> bool:
 
 
 def multiples(part: Part) -> Iterator[Correction]:
-    """Yield the change of a part's sign or numeric factor that gives the part its needed values, if there is one."""
+    """Yield at most one change of a part's sign or numeric factor that gives the part the values ``part.needed``."""
     ratio = rational(tuple(_ratio(b, a) or 0.0 for a, b in zip(part.values, part.needed, strict=True)))
     if ratio is None or ratio == 1 or (ratio < 0 and ratio != -1) or part.node.kind == "neg":
         return

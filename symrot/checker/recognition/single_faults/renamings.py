@@ -15,22 +15,26 @@ from symrot.checker.recognition.usual_letters import LETTERS, UNIT_OF_NAME, agre
 __all__ = ["NUMBERED", "is_fitting", "renaming_of_product", "renamings", "strangeness"]
 
 ANGLES = r"(phi|theta|psi|alpha|beta|gamma|delta|eta|varphi|vartheta|Phi|Theta|Psi)(_?\w+)?"
-"""The letters that books use for angles."""
+"""Pattern of the letters that books use for angles."""
 
 MORE_LETTERS = {"rad": ANGLES, "1": f"{LETTERS['1']}|[xyzwlmnvf](_[xyz1-3])?"}
-"""Unit -> letters that books use for it in long formulas, where other letters say what is meant."""
+"""Unit -> pattern of the letters that a claim with a fault may use for a quantity with this unit.
+
+These patterns replace the narrower ones of ``LETTERS``: the other letters of a long formula show what is meant.
+"""
 
 RADIUS = re.compile(r"[rR](_?\w+)?|a")
-"""The letters of radii; a is also the side of a box."""
+"""Pattern of the letters of radii; a is also the side of a box."""
 
 COORDINATES = ("x", "y", "z")
 
 UNUSUAL = 2
-"""A letter that is unusual for its kind of length counts as this many more changed names."""
+"""Number added to the count of changed names where a radius is renamed to another length, as r to h, or the reverse."""
 
 MOST_STEPS = 400
-"""The number of partial renamings of one known formula that are tried: at most so many without an absent symbol, and so
-many in all with one.
+"""Largest number of search steps for the renamings of one known formula in which each symbol gets a name.
+
+The same limit holds for all its renamings together in which one symbol, lacking in the claim, gets no name.
 """
 MOST = 6
 """The largest number of renamings of one known formula that `renamings` returns."""
@@ -109,8 +113,12 @@ def strangeness(renaming: dict[str, str | None]) -> int:
 def _extended(
     renaming: dict[str, str | None], order: Sequence[str], fitting: dict[str, list[str]], count: int
 ) -> Iterator[dict[str, str | None] | None]:
-    """Yield all extensions of ``renaming`` to the known names ``order``, with a None before each step of the search."""
-    # fitting: the claim's names for each known name; count: the number of the claim's names
+    """Yield extensions of ``renaming`` to the symbols ``order`` of the known formula, and None at each search step.
+
+    The caller counts the steps, to give up after too many. ``fitting`` maps each symbol to the claim's names that may
+    mean the same, and ``count`` is the number of names in the claim, of which at most one is left over. A symbol whose
+    own name is among those of the claim keeps its name.
+    """
     yield None  # the caller counts these, to give up after too many steps
     if not order:
         used = sum(other is not None for other in renaming.values())

@@ -33,7 +33,7 @@ __all__ = ["near_formulas"]
 MOST_PAIRS = 1500
 """The largest number of pairs (known formula, renaming) that are compared."""
 MOST_SEARCHES = 4
-"""The number of latest searches that are stored."""
+"""The number of latest results of `_search` that are stored."""
 MOST_NODES = 500
 """The largest number of symbols and operations in a formula that is searched for faults."""
 FEW = 3
@@ -47,8 +47,10 @@ Renaming = dict[str, str | None]
 
 
 def near_formulas(claim: Claim, named: NamedFormula, fits: Callable[[Known], bool]) -> list[Near]:
-    """Return changes of a claim's formula that may turn it into a known formula with ``fits(known)``, the cheapest
-    first. The code "none" means that no change is needed.
+    """Return changes of a claim's formula that may each turn it into a known formula, the cheapest first.
+
+    ``fits(known)`` decides which known formulas are compared. A single result with the fault code "none" means that the
+    formula equals a known one without a change. The list is empty if the formula has no values or is too long.
     """
     search = _search(claim, named)
     if search is None:
@@ -118,7 +120,7 @@ def _search(claim: Claim, named: NamedFormula) -> Search | None:
 
 
 _latest: dict[Any, tuple[Search | None, int]] = {}
-"""The latest searches by what they depend on in a claim, each with the operations that it took to prepare it."""
+"""The parts of a claim that its search depends on -> (result of `_search`, number of operations that it took)."""
 
 
 def has_root_of_sum(formula: Node) -> bool:

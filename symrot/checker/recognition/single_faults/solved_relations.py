@@ -87,11 +87,11 @@ def solved_claims(left: Node, right: Node, atoms: Sequence[Node]) -> Iterator[Na
 
 
 def put_back(left: Node, right: Node, named: NamedFormula, tree: Node) -> tuple[Node, Node] | None:
-    """Return both sides of ``left == right`` after the change of one term that turned ``named.formula`` into ``tree``.
+    """Return the two sides of the equation ``left == right`` with a repair that was made in its solved form.
 
-    ``named`` is the same equation, solved. None for other changes.
+    ``named`` is the equation solved for a letter, ``tree`` the repaired ``named.formula``. Return None unless exactly
+    one term differs between these two formulas.
     """
-    # tree is the repaired formula of the solved equation
     before, after = _terms(named.formula), _terms(tree)
     changed = [(old, new) for old, new in zip(before, after, strict=False) if old != new]
     if len(before) != len(after) or len(changed) != 1:

@@ -20,13 +20,13 @@ FUNCTIONS: dict[str, Callable[..., float]] = {
 INVERSES: dict[str, Callable[[float], float]] = {
     "sqrt": lambda needed: needed**2, "acos": math.cos, "asin": math.sin, "atan": math.tan,
 }  # fmt: skip
-"""Function -> the function from the value that a call should have to that of its argument."""
+"""Name of a function -> its inverse, which computes the argument from the value that the call should have."""
 SLACK = 1000.0
-"""How much larger an error may be in the quick search than in the exact one, which follows."""
+"""Factor by which the tolerance ``CLOSE`` is larger in this quick test than in the comparison that follows."""
 
 
 class Operation(NamedTuple):
-    """One node of a formula."""
+    """One entry of a tape: a symbol, a number, an operation or a function call of the formula."""
 
     kind: str  # as in Node, and "constant" for pi
     arguments: tuple[int, ...]  # the places of the arguments on the tape
@@ -35,7 +35,7 @@ class Operation(NamedTuple):
 
 
 class Tape(NamedTuple):
-    """The operations of a scalar formula; the last one gives the value of the whole."""
+    """A scalar formula as a list of operations, each after its arguments; the last one gives the formula's value."""
 
     operations: tuple[Operation, ...]
 
@@ -50,9 +50,10 @@ class Tape(NamedTuple):
         return None if any(isinstance(value, complex) for value in values) else values
 
     def may_have_too_much(self, values: Sequence[Sequence[float]], needed: float) -> bool:
-        """Return False if no term should be 0 and no factor 1 for the whole to have the value ``needed``.
+        """Return whether the formula may get the value ``needed`` at the first point by leaving out a term or a factor.
 
-        ``values`` are those of all operations at some points, the first of which is the one for ``needed``.
+        ``values`` has a list for each point, with the values of all operations in the order of the tape. The test is
+        quick: True may be wrong. Numbers, exponents and parts inside sin, cos and tan are not tested.
         """
         own = values[0]
         required: list[float | None] = [None] * len(own)
@@ -116,7 +117,10 @@ def _required_value(operation: Operation, own: Sequence[float], place: int, argu
 
 
 def tape_of_tree(tree: Node) -> Tape | None:
-    """Return the tape of a formula; None for a formula with matrices, or with functions that no tape has."""
+    """Return a formula as a list of operations, each after its arguments.
+
+    Return None for a formula with a written-out matrix, an index, or a function that is not in ``FUNCTIONS``.
+    """
     operations: list[Operation] = []
 
     def place_of(node: Node, parent: str) -> int | None:

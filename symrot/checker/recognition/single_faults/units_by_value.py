@@ -15,7 +15,10 @@ from symrot.checker.units.units import read_unit
 __all__ = ["has_other_unit"]
 
 UNITS = {"[kg]": 1.37, "[m]": 1.61, "[s]": 0.83}
-"""Base unit -> the factor by which values in this unit are multiplied, to compare the units of formulas."""
+"""Base unit -> the arbitrary factor from numbers in this unit to numbers in an invented unit.
+
+The values of two formulas with different units change by different factors from SI units to the invented units.
+"""
 
 
 def has_other_unit(named: NamedFormula, known: Known, nodes: dict[str, Node], letters: Letters) -> bool:
@@ -58,7 +61,10 @@ def has_other_unit(named: NamedFormula, known: Known, nodes: dict[str, Node], le
 
 
 def _scale(unit: str | None) -> float | None:
-    """Return the factor from a number in SI units to one in ``UNITS``: 1.61/0.83 for "m/s". None without a unit."""
+    """Return the factor from a number in the SI unit ``unit`` to one in the invented units of ``UNITS``.
+
+    For "m/s" it is 1.61/0.83, as ``UNITS`` has 1.61 for m and 0.83 for s. Return None if ``unit`` is None.
+    """
     if unit is None:
         return None
     # with factors f for m and g for s, the factor for m/s^2 is f/g^2

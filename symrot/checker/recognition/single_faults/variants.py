@@ -15,7 +15,7 @@ from symrot.checker.repair.edits.trees import scaled, square_of, with_cofunction
 __all__ = ["FUNCTIONS", "LACKING", "Variant", "variants"]
 
 POWERS = tuple(range(-2, 7))
-"""The exponents that a part may have instead of its own."""
+"""Exponents that are tried in place of the exponent of a part of a formula, as x^3 for x^2; 0 is skipped."""
 FUNCTIONS: dict[str, Callable[[float], float]] = {
     "sin": math.sin, "cos": math.cos, "tan": math.tan, "cot": lambda x: 1 / math.tan(x),
     "sec": lambda x: 1 / math.cos(x), "csc": lambda x: 1 / math.sin(x),

@@ -29,7 +29,7 @@ FAULT_DESCRIPTIONS = {
     "sign_branch": "the claim holds on one branch of a root only",
     "principal_value": "the claim holds for principal values of the inverse function only",
 }
-"""Code of a diagnosis -> its sentence."""
+"""Code of a fault, as ``Diagnosis.code`` -> the sentence that describes the fault."""
 
 COST = {
     "frame_body_space": 0.55, "active_passive_transpose": 0.6, "quaternion_product_order": 0.6,
@@ -61,4 +61,7 @@ COST = {
     # growth with the size of the inserted formula, and with the depth of the piece
     "per_piece_added": 0.02, "rational_in_front": 0.04, "per_level": 0.01, "per_level_of_matrix": 0.05,
 }  # fmt: skip
-"""Costs of edits, by code or by kind of edit: the order in which repairs are tried and offered."""
+"""Code of a fault such as ``sign_of_term`` -> the cost of an edit that corrects it; cheaper edits are tried first.
+
+The other keys name special kinds of edits: their values are costs, or are added to or multiplied by other costs.
+"""

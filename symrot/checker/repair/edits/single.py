@@ -75,7 +75,7 @@ def single_edits(
 
 
 def _admits_squares(node: Node) -> bool:
-    """Return whether an edit may square the arguments of ``node``: True for ``Matrix``, ``diag`` and ``sqrt``."""
+    """Return whether `single_edits` may square an argument of a call: in ``Matrix``, ``diag`` and ``sqrt`` only."""
     return node.kind == "call" and node.value in ("Matrix", "sqrt", "diag")
 
 

@@ -20,7 +20,7 @@ MOST_TERMS_IN_PAIRS = 6
 """A sum with more terms gets no edits that change two signs, add brackets, or double or halve the whole sum."""
 
 PartEdit = tuple[str, Node, float]
-"""The code of an edit, the new part of the tree, and the cost to be added to that of the code."""
+"""An edit of a part: (code of the corrected fault, new tree of the part, cost in addition to ``COST[code]``)."""
 
 
 def edits_of_sum(node: Node, matrices: Callable[[Node], bool]) -> Iterator[PartEdit]:
