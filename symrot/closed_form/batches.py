@@ -1,8 +1,9 @@
 """Constants of many motions in closed form, as arrays (a batch); every bit is the same as for single motions.
 
-C then computes the motions from these constants. Arguments: ``omega`` are the initial angular velocities, shape (n, 3);
-``start`` are the initial attitudes that :func:`attitudes` returns; ``across`` and ``own`` are moments of inertia about
-an axis normal to the symmetry axis and about the symmetry axis. A double-double number is a sum hi + lo of two doubles.
+C then computes the motions from these constants. Arguments: ``omega`` are the initial angular velocities, rad/s, shape
+(n, 3); ``start`` are the initial attitudes that :func:`attitudes` returns, shape (n, 8), or (8,) if all motions share
+one; ``across`` and ``own`` are moments of inertia, kg m^2, about an axis normal to the symmetry axis and about the
+symmetry axis. A double-double number, or pair, is a sum hi + lo of two doubles.
 """
 
 # Sums in which all digits may cancel are computed in integers, one motion after the other; all other constants are
@@ -176,8 +177,10 @@ def _noticed(omega: Floats) -> Floats:
 
 
 def free_bodies(body: FreeRigidBody, omega: Floats, start: Floats) -> Batch:
-    """Return the motions of one free body from n initial states as a batch; ``omega`` must pass :func:`usual`."""
-    # start: shape (n, 8), or (8,) if all motions share the attitude
+    """Return the motions of one free body from n initial states as a batch; ``omega`` must pass :func:`usual`.
+
+    ``start`` are the initial attitudes that :func:`attitudes` returns, shape (n, 8) or (8,).
+    """
     exact = np.empty((len(omega), 8))
     exact[:, :6] = body.gaps
     if body.axes is None:
@@ -192,7 +195,10 @@ def free_bodies(body: FreeRigidBody, omega: Floats, start: Floats) -> Batch:
 
 
 def free_bodies_of_moments(moments: Sequence[Column], omega: Floats, start: Floats) -> Batch:
-    """Return the motions of n free bodies with the principal moments ``moments``, kg m^2, as a batch."""
+    """Return the motions of n free bodies with the principal moments ``moments``, kg m^2, as a batch.
+
+    ``start`` are the initial attitudes that :func:`attitudes` returns, shape (n, 8) or (8,).
+    """
     omega, n = _noticed(omega), len(omega)
     exact, pairs = np.empty((n, 8)), _columns(moments, n)
     if not pairs[:, 1::2].any():  # the low parts are zero, since moments are doubles
@@ -214,12 +220,13 @@ def free_bodies_of_moments(moments: Sequence[Column], omega: Floats, start: Floa
 def free_bodies_of_tensors(
     entries: Sequence[Column], omega: Floats, start: Floats
 ) -> tuple[Batch | None, NDArray[np.bool_]]:
-    """Return the motions of n free bodies in any axes as a batch, and for each motion whether the batch is exact.
+    """Return (batch, settled): the motions of n free bodies in any axes, and a Boolean array of shape (n,).
 
-    ``entries`` are the tensor components xx, yy, zz, xy, xz and yz, kg m^2. The batch is None, and no motion exact, if
-    a component that all motions share is outside the range of pairs.
+    ``settled[i]`` is True if the constants of motion i in the batch have the same bits as those of a single motion; the
+    caller must compute the other motions one by one. ``entries`` are the tensor components xx, yy, zz, xy, xz and yz,
+    kg m^2; ``start`` are the initial attitudes that :func:`attitudes` returns. If a component that all motions share is
+    nonzero and not between SMALLEST and LARGEST in absolute value, the batch is None and ``settled`` is all False.
     """
-    # without a batch if a shared component is outside the range of pairs
     settled = np.ones(len(omega), np.bool_)
     principal = bodies.principal_bodies(entries, omega)
     if principal is None:
@@ -240,15 +247,23 @@ def _integers(values: list[float]) -> list[int]:
 def tops(
     across: Column, own: Column, pull: Floats, frame: Frame, omega: Floats, start: Floats,
 ) -> Batch:  # fmt: skip
-    """Return the motions of n symmetric heavy tops as a batch; ``start`` are attitudes that :func:`turned` returns."""
-    # pull: weight times distance of the centre of mass from the fixed point, N m, as hi and lo
+    """Return the motions of n symmetric heavy tops as a batch.
+
+    ``across`` and ``own`` are the moments, kg m^2, about an axis normal to the symmetry axis and about the symmetry
+    axis; ``pull`` is the weight times the distance of the centre of mass from the fixed point, N m, as hi and lo.
+    ``start`` are the initial attitudes converted to the axes ``frame`` of the formulas, as :func:`turned` returns them.
+    """
     rates = _pairs(np.ascontiguousarray(omega[:, frame.named]))
     axes = None if frame.axes is None else np.array(frame.axes)
     return Batch("heavy_top", (_together([across, own], len(omega)), pull, rates, start, np.array(frame.space), axes))
 
 
 def gyrostats(across: Column, own: Column, rotor: Column, axis: int, omega: Floats, start: Floats) -> Batch:
-    """Return the motions of n symmetric gyrostats as a batch; ``rotor`` is an angular momentum along ``axis``."""
+    """Return the motions of n symmetric gyrostats as a batch.
+
+    ``rotor`` is the rotor's angular momentum, kg m^2/s, along the symmetry axis ``axis`` (0, 1 or 2); ``across`` and
+    ``own`` are the moments about an axis normal to it and about it. ``start`` are attitudes from :func:`attitudes`.
+    """
     named = [(axis + 1) % 3, (axis + 2) % 3, axis]
     rates = _pairs(np.ascontiguousarray(omega[:, named]))
     constants = [_together([across, own], len(omega)), _together([rotor], len(omega))]
@@ -256,7 +271,11 @@ def gyrostats(across: Column, own: Column, rotor: Column, axis: int, omega: Floa
 
 
 def spin_ups(across: Column, own: Column, torque: Column, axis: int, omega: Floats, start: Floats) -> Batch:
-    """Return the motions of n symmetric bodies under a constant torque about the body axis ``axis``, as a batch."""
+    """Return the motions of n symmetric bodies under a constant torque, N m, about the body axis ``axis``, as a batch.
+
+    ``across`` and ``own`` are the moments about an axis normal to this axis and about it, kg m^2. ``start`` are the
+    initial attitudes that :func:`attitudes` returns.
+    """
     numbers = np.empty((len(omega), 20))
     numbers[:, :6] = _columns([across, own, torque], len(omega))
     numbers[:, 6:12] = _pairs(omega[:, [axis - 2, axis - 1, axis]])
@@ -265,7 +284,11 @@ def spin_ups(across: Column, own: Column, torque: Column, axis: int, omega: Floa
 
 
 def driven(constants: Constants | Sequence[Constants], omega: Floats, start: Floats) -> Batch:
-    """Return the motions of n bodies driven about one axis as a batch; ``constants`` is one body or a list of n."""
+    """Return the motions of n bodies driven about one axis as a batch.
+
+    ``constants`` are those of one body or a list of n, all with the same axis; ``start`` are the initial attitudes that
+    :func:`attitudes` returns, shape (n, 8) or (8,).
+    """
     bodies = [constants] * len(omega) if isinstance(constants, Constants) else constants
     axis = bodies[0].axis
     turned: NDArray[np.bool_] = (omega[:, [axis - 2, axis - 1]] != 0).any(axis=1)

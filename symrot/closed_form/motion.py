@@ -18,8 +18,11 @@ from symrot.errors import CompilerError, InputError
 __all__ = ["REGIMES", "ExactMotion", "functions", "prepared"]
 
 REGIMES = ("steady", "circular", "hyperbolic", "separatrix")
-"""Kinds of functions by which a motion is computed: elementary functions, theta series, transformed theta series (which
-converge faster for large moduli), and functions on the separatrix."""
+"""The four kinds of functions by which a motion is computed, in this order.
+
+Elementary functions; theta series; transformed theta series, which converge faster for large moduli; functions on the
+separatrix.
+"""
 
 _DOMAIN = 1
 
@@ -28,7 +31,7 @@ class ExactMotion(ABC):
     """One body's motion from one initial state, computed by a closed form at any time."""
 
     regime: str
-    """One of :data:`REGIMES`."""
+    """How the motion is computed, an entry of :data:`REGIMES`; for instance, "circular" means by theta series."""
 
     @abstractmethod
     def _fill(self, times: Floats, omega: Floats | None, quaternion: Floats | None) -> None: ...

@@ -194,7 +194,7 @@ def refute(case: Case) -> Decision | None:
 
 
 def arguments(case: Case) -> Decision | None:
-    """Return a decision if all entries become equal once the arguments of functions are in normal form, else None."""
+    """Return a decision if both sides are proven equal once arguments of functions are in normal form, else None."""
     ring = case.ring
     try:
         # entries that earlier stages have proven equal are not tried again
@@ -207,7 +207,7 @@ def arguments(case: Case) -> Decision | None:
 
 
 def congruence(case: Case) -> Decision | None:
-    """Return a decision if all entries become equal by replacing inverse functions, else None.
+    """Return a decision if both sides are proven equal once equal inverse functions are replaced by one, else None.
 
     For example, acos(x) is replaced by pi/2 - asin(x).
     """

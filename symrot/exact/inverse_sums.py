@@ -32,11 +32,13 @@ _NAMES = (*INVERSE, log)
 
 @dataclass(frozen=True)
 class Lift:
-    """A condition under which a polynomial is zero: in a new ``ring``, all polynomials ``numerators`` are zero."""
+    """A condition that implies that some polynomial is zero: all polynomials ``numerators`` of another ring are zero.
+
+    For example, ``asin(x) + acos(x) - pi/2`` is zero if its sine, and its cosine minus 1, are zero.
+    """
 
     ring: FormulaRing
-    # for D = asin(x) + acos(x) - pi/2: sin(D) and cos(D) - 1, in which asin and acos do not occur
-    numerators: tuple[PolyElement, ...]
+    numerators: tuple[PolyElement, ...]  # of sin(D) and cos(D) - 1 for this D: without asin and acos
 
 
 def vanishes(ring: FormulaRing, numerator: PolyElement) -> bool:
@@ -45,9 +47,9 @@ def vanishes(ring: FormulaRing, numerator: PolyElement) -> bool:
 
 
 def proof(ring: FormulaRing, numerator: PolyElement) -> tuple[FormulaRing, ...] | None:
-    """Prove that the polynomial ``numerator`` is zero; return the rings that this needs in addition to ``ring``.
+    """Prove that the polynomial ``numerator`` is zero; return the rings that the proof uses in addition to ``ring``.
 
-    The tuple may be empty. None: there is no proof.
+    The tuple may be empty; None means that no proof is found.
     """
     numerator = ring.reduce(numerator)
     if not numerator:

@@ -244,7 +244,8 @@ def _inertial(element: Element, reason: str) -> Element:
 def _require_known(element: Element, attributes: Collection[str], children: Collection[str]) -> None:
     """Raise InputError if ``element`` has an attribute, or a child element, that its format does not define.
 
-    Passed over, it would be lost: a rotation under a name of another version, or a mass as an attribute.
+    A part with an unknown name would be ignored: a rotation whose name another version of the format defines, or a mass
+    as an attribute.
     """
     for kind, names, known in (
         ("attributes", element.keys(), attributes), ("elements", [child.tag for child in element], children)

@@ -70,7 +70,10 @@ def pose(at: Sequence[Any], rotation: Sequence[Sequence[Any]]) -> hulls.Pose:
 def dense_part(
     shape: str, dimensions: Mapping[str, Any], place: hulls.Pose, density: Fraction | Node, subtract: bool
 ) -> DensePart:
-    """Return a part for the test of holes; ``dimensions`` are its exact dimensions, in which points are tuples."""
+    """Return a part of a body with its exact ``dimensions``, and with a shape in doubles for the tests of holes.
+
+    ``dimensions`` maps names to lengths or, for the corners of a tetrahedron, to a tuple of points.
+    """
     rounded = {
         name: tuple(tuple(map(float, point)) for point in value) if isinstance(value, tuple) else float(value)
         for name, value in dimensions.items()
@@ -120,7 +123,11 @@ def doubtful_holes(parts: Sequence[DensePart | None], names: Sequence[str]) -> t
 
 
 def _is_within(hole: DensePart, near: Sequence[DensePart], radius: float) -> bool:
-    """Return whether bounds prove that the density of the body is nowhere negative in a hole."""
+    """Return whether the density of the body is proven to be nowhere negative in a hole.
+
+    ``near`` are the other parts that may touch the hole; ``radius`` is that of a ball around the hole, m. The hole is
+    tested as a whole, then in pieces (:func:`_pieces`).
+    """
     rounding = ROUNDING * radius
     added = [part for part in near if not part.subtract]
     others = [part for part in near if part.subtract and not are_apart(hole.solid, part.solid, rounding)]
@@ -135,8 +142,11 @@ def _is_within(hole: DensePart, near: Sequence[DensePart], radius: float) -> boo
 
 
 def _is_covered(hole: DensePart, near: Sequence[DensePart], radius: float) -> bool:
-    """Return whether the faces of parts cut a hole into pieces that bounds prove to lie within parts."""
-    # such as a round hole across the joint of two boxes
+    """Return whether a hole, such as a bore across the joint of two boxes, is proven to lie within several parts.
+
+    The planes of the parts' faces cut the hole into pieces; each must lie within parts of sufficient density. The
+    arguments are those of :func:`_is_within`.
+    """
     rounding = ROUNDING * radius
     hosts = [part for part in near if not part.subtract and is_convex(part.solid)]
     others = [part for part in near if part.subtract and not are_apart(hole.solid, part.solid, rounding)]
@@ -192,11 +202,11 @@ _CUT = {
 
 
 def _pieces(hole: hulls.Solid3, hosts: Sequence[hulls.Solid3]) -> list[hulls.Solid3]:
-    """Return the pieces into which the ends of the parts ``hosts`` cut a hole.
+    """Return the pieces into which a hole is cut, along its own axes, where one of the parts ``hosts`` begins or ends.
 
-    The list is empty for shapes other than boxes, cylinders and prisms, and if there would be too many pieces.
+    A bore through two plates that touch gives two pieces. The list is empty for shapes other than boxes, cylinders and
+    prisms, and if there would be more than MOST_PIECES pieces.
     """
-    # a bore through two parts that touch is cut where one ends and the other begins
     cuts = []
     for name, axis in _CUT.get(hole.shape, ()):
         half = hole.dimensions[name] / 2

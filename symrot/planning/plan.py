@@ -103,7 +103,7 @@ class Plan:
     def switches(self) -> list[str]:
         """The functions with jumps or kinks in the torques, as the scene writes them, such as ``"sign(omega_3)"``.
 
-        The list is empty if the plan was made without modes.
+        The list is empty if no torque has such a function.
         """
         return [switch.label for torque in self.structure.formula_torques for switch in torque.switches]
 
@@ -137,9 +137,10 @@ class Plan:
         return tuple([STATES.index(name) for name in self.states])
 
     def from_start(self, initial: Initial) -> "Plan":
-        """Return the plan for another initial state without an examination of the rules, which saves time.
+        """Return the plan for another initial state, with the same equations and other numbers.
 
-        The state must have the same :func:`structure_key`; this is not checked.
+        To save time, the rules that simplify the equations are not applied again. The state must have the same
+        :func:`structure_key`; this is not checked.
         """
         scene, plan = object.__new__(Scene), object.__new__(Plan)
         scene.__dict__.update(self.scene.__dict__, initial=initial)

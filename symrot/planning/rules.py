@@ -51,7 +51,7 @@ class RuleOutcome(NamedTuple):
     structure : Structure
         The structure after the rule.
     skipped : bool
-        Whether the rule removed something from the equations.
+        Whether the rule simplifies the equations: it removes a term or a state, or replaces a constant by a number.
     why : str
         The reason for the decision.
     derivation : str
@@ -331,7 +331,7 @@ RULES: tuple[tuple[str, Callable[[Scene, Structure], RuleOutcome]], ...] = (
     ("rotation out of one axis", _one_axis),
     ("rate of spin", _constant_spin),
 )
-"""The rules in the order in which they are applied, as pairs (subject, function)."""
+"""The rules that simplify the equations of a scene, in the order of application, as pairs (subject, function)."""
 
 
 def _whole_motion(scene: Scene, structure: Structure) -> RuleOutcome:
@@ -350,4 +350,4 @@ RULES_UNDER_EXTERNAL_TORQUE: tuple[tuple[str, Callable[[Scene, Structure], RuleO
     ("torque terms", _terms_under_external_torque),
     ("attitude", _whole_motion),
 )
-"""The rules for a scene with a torque that has no formula."""
+"""The rules that simplify the equations of a scene under a torque without a formula, as pairs (subject, function)."""

@@ -1,4 +1,4 @@
-"""Kernels of plans as saved data: a kernel consists of the equations of a plan as programs, and of their C text.
+"""Kernels of scenes as saved data: a kernel consists of the equations of a scene's plan as programs, and their C text.
 
 A program is a list of arithmetic operations without branches, and can be printed as C or as Python. The cache stores
 kernels as JSON, and the propagator assigns values to their parameters. No SymPy.
@@ -58,7 +58,9 @@ class KernelRecord(TypedDict):
 
 
 class SceneKernel:
-    """The equations of a structure, ready to be evaluated: derived once and used for every scene of the structure.
+    """The equations of motion of all scenes of one structure, derived once and ready to be evaluated.
+
+    A structure says which constants of body and torques are zero, one, equal or free (any other value).
 
     Examples
     --------

@@ -1,7 +1,8 @@
-"""Kernels of plans: loaded from the cache, or derived, printed as C, compiled and stored in the cache.
+"""Kernels of scenes: loaded from the cache, or derived, printed as C, compiled and stored in the cache.
 
-A kernel is the generated code for the rates (time derivatives) of the states and for the output quantities. Its key in
-the cache contains the structure of the plan and the version of symrot's files, but no numbers of the scene.
+A kernel is the generated code for the rates (time derivatives) of the states and for the output quantities. It is
+derived from a plan, the smallest set of equations that gives the requested output of a scene. Its key in the cache
+contains the structure of the plan and the version of symrot's files, but no numbers of the scene.
 """
 
 import json
@@ -122,7 +123,7 @@ def _parameter_count(rates: Program) -> int:
 
 
 def motion_library(plan: Plan, kernel: SceneKernel) -> Path:
-    """Return the path of the library that integrates the motion of a plan by DOP853, compiled unless it is cached."""
+    """Return the path of the library that integrates the motion of a plan by DOP853; compile it unless it is cached."""
     return library.build(library_source(plan, kernel), "motion")
 
 
@@ -213,9 +214,11 @@ def _degree(node: Node) -> int:
 
 
 def formula_deviations(plan: Plan, kernel: SceneKernel) -> "Callable[[Mapping[str, float]], Deviations] | None":
-    """Return a function from the rates' parameters to bounds on torque changes (``Deviations``), for SciPy's steps.
+    """Return a function that makes bounds (:class:`Deviations`) from the values of the rates' parameters, by name.
 
-    None if no torque can have a pulse that a step misses, or if the rates have no Taylor series.
+    The bounds say how far the rates can change near a time and state; with them SciPy's steps stay so short that none
+    misses a short pulse of a torque formula. Return None if no torque can have such a pulse, or if the rates have no
+    Taylor series.
     """
     if not has_formulas(plan):
         return None

@@ -201,7 +201,10 @@ class EulerMotion(Motion):
                 whole = block.states(np.array([t]))[0]
 
     def _steps(self, integration: Integration, sequence: str, end: float) -> Iterator[tuple[float, float, Floats]]:
-        """Yield groups of steps (first time, last time, recorded steps) until ``end`` or, if switching, gimbal lock."""
+        """Yield the motion up to ``end``, s, in groups of steps: (first time, last time, recorded steps).
+
+        If the motion may change its Euler sequence, the last group ends with the first step that ends near gimbal lock.
+        """
         count, broken = self._moving, None
         try:
             with closing(integration.runs(end)) as runs:
@@ -243,7 +246,7 @@ class EulerMotion(Motion):
         return states
 
     def follow(self, times: Floats, in_order: bool = False) -> tuple[Floats, Stats]:
-        """Return the states at ``times``, s, shape (n, N), and the cost (steps, evaluations, seconds)."""
+        """Return the N states at n ``times``, s, shape (n, N), and the cost (steps, evaluations, seconds)."""
         began = perf_counter()
         self._count, self._sums = [0, 0, 0, 0], []
         states = np.empty((len(times), len(self.plan.states)))
@@ -262,7 +265,7 @@ class EulerMotion(Motion):
         return states, Stats(accepted, rejected, evaluations, seconds, switches, rounded_beyond=rounded)
 
     def dense(self, span: tuple[float, float]) -> Callable[[Floats], Floats]:
-        """Return a function from n times, s, within ``span`` to the states, shape (n, N)."""
+        """Return a function that takes n times within ``span``, s, and returns the N states, shape (n, N)."""
         sides = [list(self._blocks(end)) if end != self.start else [] for end in span]
 
         def at(times: Floats) -> Floats:

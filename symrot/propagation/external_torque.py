@@ -141,8 +141,8 @@ class _Function(TorqueSource):
         return self.pointer
 
     def check(self, low: float, high: float) -> None:
-        """Accept a motion over any times, and forget the exception of the function in an earlier motion."""
-        # it is not known where the user's function is defined; failure() reports only exceptions from here on
+        """Clear the error of an earlier motion. No time raises InputError: the domain of the function is not known."""
+        # failure() reports only exceptions from here on
         self.error = None
 
     def failure(self) -> BaseException | None:
@@ -172,7 +172,7 @@ class _CFunction(TorqueSource):
         return self.pointer
 
     def check(self, low: float, high: float) -> None:
-        """Accept every time: the domain of a C function is not known."""
+        """Do nothing: no time raises InputError, because the domain of a C function is not known."""
 
     def failure(self) -> BaseException | None:
         """Return None: a C function raises no exceptions, but reports an error by its return value."""

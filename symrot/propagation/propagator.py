@@ -255,7 +255,11 @@ class Propagator:
         return trajectory
 
     def _with_samples(self, error: BaseException, motion: Motion, times: Floats, began: float) -> BaseException:
-        """Return the exception that ended a motion early, with the samples before that time as its ``trajectory``."""
+        """Return the exception to raise for ``error``, which ended a motion early, with a partial ``trajectory``.
+
+        The trajectory holds the samples that were reached; without samples the exception has none. A PropagationError
+        is replaced by one whose message begins with the name of the scene. ``began``: when the computation began, s.
+        """
         samples: Samples | None = getattr(error, "samples", None)
         part: Trajectory | None = getattr(error, "trajectory", None)
         ended: BaseException = error

@@ -79,7 +79,10 @@ class ShiftedParameters:
         self._lines = [_line(node) for node in self._formulas]
 
     def parameters(self, epoch: float | Fraction) -> list[float]:
-        """Return the values of all formulas for an epoch, s after ``start``, each computed exactly and rounded once."""
+        """Return the values of all formulas for one value of the epoch, ``start`` + ``epoch``, s.
+
+        Each value is computed exactly and rounded once.
+        """
         time = self._start + Fraction(epoch)
         top, bottom, values = time.numerator, time.denominator, {EPOCH: time}
         try:
@@ -134,7 +137,11 @@ def clock(
     start: float = 0.0,
     make: Callable[[Plan, SceneKernel], Any] = motion_library,
 ) -> Callable[[float], tuple[Any, list[float]]]:
-    """Return a function from an epoch, s, to a pair: rates that take the time since the epoch, and their parameters."""
+    """Return a function that takes an epoch, s after ``start``, and returns rates and the values of their parameters.
+
+    The rates take the time since the epoch: a stepper that restarts its clock at a late time calls the function. They
+    are what ``make`` returns, a compiled library or a Python function, and are the same for all epochs.
+    """
 
     # moving(), a plan and kernel as time_shifted returns them, is called on first use; make() turns them into the
     # library for DOP853 or the Python function for SciPy

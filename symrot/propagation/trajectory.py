@@ -102,8 +102,9 @@ class Trajectory(MotionSamples):
         As in solve_ivp: status is 1 if a terminal event ended the motion, else 0. If a motion cannot be followed, a
         PropagationError is raised; its ``trajectory`` holds the samples before, with status -1 and ``success`` false.
     warnings : tuple of str
-        Sentences about what cannot be guaranteed: the accuracy under a torque without a formula, or under a torque of
-        the time far from t = 0, or an event whose formula comes so close to zero that the error of the motion matters.
+        Sentences about what cannot be guaranteed: the accuracy under a torque without a formula, or far from t = 0
+        under a torque whose formula contains the time; or an event whose formula comes so close to zero that the error
+        of the motion matters. They also contain the warnings of the scene.
     t_events, y_events : list of arrays or None
         For each requested event: its times, s, shape (k,), and the states at these times, shape (k, N).
     events : tuple of Event, or None
@@ -190,9 +191,9 @@ class Trajectory(MotionSamples):
         return self._states.T
 
     def _evaluate(self, *names: str) -> Floats:
-        """Return output quantities of the kernel at the sample times, shape (n, len(names)).
+        """Return output quantities of the kernel at the n sample times, shape (n, len(names)).
 
-        The kernel calls omega_1 ``"omega_1 of t"``.
+        ``names`` are the kernel's names of the quantities, such as ``"omega_1 of t"`` for the component omega_1.
         """
         columns = [name.removesuffix(" of t") for name in names]
         if set(columns) <= set(self.states):

@@ -77,7 +77,10 @@ def _is_consistent(task: BoundTask, search: SearchResult | None) -> bool:
 
 
 def main(arguments: Sequence[str] | None = None) -> int:
-    """Write the table of bounds, or with ``--check`` only check the table; return the exit code."""
+    """Write the table of the library kernels' rounding-error bounds to symrot's folder; return the exit code.
+
+    With ``--check`` the table is only checked; the exit code is 1 if it has faults.
+    """
     parser = ArgumentParser(
         prog="python -m symrot.workshop.bound_table", description="Write the bounds of the library."
     )

@@ -126,7 +126,7 @@ class KernelText(ABC):
 
 
 class LibraryText(KernelText):
-    """The texts of a library kernel; its bounds of rounding errors hold on standard ranges of the inputs."""
+    """The texts of a kernel of symrot's library; its rounding bounds hold on the ranges of inputs in its definition."""
 
     folders: ClassVar[Mapping[str, str]] = {"numpy": "../numpy", "js": "../js", "jax": "../jax"}
 

@@ -196,7 +196,7 @@ class StepText(StepFiles):
 
     @property
     def _derivation(self) -> str:
-        """The pages that derive the formulas of the step."""
+        """The paths of the pages that derive the formulas of the step, separated by commas."""
         if isinstance(self.method, SteadyRotations):
             return f"derivations/{'spherical_body' if self.method.axis is None else 'symmetric_gyrostat'}.md"
         return "derivations/euler_equations.md, derivations/quaternion_rates.md"

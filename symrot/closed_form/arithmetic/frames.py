@@ -1,4 +1,4 @@
-"""Rotation matrices whose entries are fractions, and their quaternions, to 90 digits; they convert between axes."""
+"""Rotation matrices and quaternions that change the axes of a body or of space, as fractions with 90 correct digits."""
 
 from collections.abc import Sequence
 from fractions import Fraction
@@ -11,7 +11,7 @@ Rows = Sequence[Sequence[Fraction]]
 
 
 def quaternion_of(r: Rows) -> tuple[Fraction, ...]:
-    """Return the unit quaternion, scalar first, of a proper rotation matrix ``r``, given by its rows."""
+    """Return the unit quaternion, scalar first, to 90 digits, of a proper rotation matrix ``r``, given by its rows."""
     # Shepperd's method divides by the largest component of the quaternion, so that no digits are lost
     trace = r[0][0] + r[1][1] + r[2][2]
     candidates = (

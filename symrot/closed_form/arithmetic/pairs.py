@@ -32,7 +32,10 @@ SMALLEST = 1e-205
 """Smallest moment of inertia, kg m^2."""
 
 GRID = 2.0**-33
-"""``lo`` of an attitude component is rounded to a multiple of GRID times the last bit of ``hi``."""
+"""The rounding of attitudes: each component is a sum hi + lo of two doubles, with hi the nearest double to it.
+
+lo is rounded to a multiple of GRID times the last bit of hi, so that batches arrive at the same doubles.
+"""
 
 _BITS = 600  # 2^600 and its inverse lie inside these bounds
 

@@ -56,11 +56,13 @@ def _less_whole_turns(turns: dd.Pair) -> Floats:
 
 
 class Turning:
-    """A function from time to ``share`` times the angle by which a driven body has rotated.
+    """A function from time to a multiple of the angle, modulo 1 revolution, by which a driven body has rotated.
+
+    The multiple, ``factor`` times the angle, is for instance half the angle, for the quaternion.
 
     Parameters
     ----------
-    share : Fraction
+    factor : Fraction
         The factor by which the angle of rotation is multiplied.
     rate : Fraction
         Angular velocity at the start, rad/s.
@@ -70,9 +72,9 @@ class Turning:
         Decay rate that the damping causes, 1/s.
     """
 
-    def __init__(self, share: Fraction, rate: Fraction, push: Fraction, decay: Fraction) -> None:
-        turn = share / (2 * number.PI)
-        self._share, self._rate, self._push, self._decay = share, pair(rate * turn), pair(push * turn), pair(-decay)
+    def __init__(self, factor: Fraction, rate: Fraction, push: Fraction, decay: Fraction) -> None:
+        turn = factor / (2 * number.PI)
+        self._factor, self._rate, self._push, self._decay = factor, pair(rate * turn), pair(push * turn), pair(-decay)
         final = push / decay if decay else rate
         rest = (rate - final) / decay if decay else push / 2
         self._exact = final, rest, decay
@@ -88,7 +90,7 @@ class Turning:
 
     @np.errstate(over="ignore")  # only upper bounds overflow; such angles are computed in integers
     def __call__(self, t: Floats) -> Floats:
-        """Return ``share`` times the angle of rotation at each time of ``t``, s, in revolutions from -1/2 to 1/2."""
+        """Return ``factor`` times the angle of rotation at each time in ``t``, s, in revolutions from -1/2 to 1/2."""
         if len(t) > _BLOCK:
             return np.concatenate([self(t[k : k + _BLOCK]) for k in range(0, len(t), _BLOCK)])
         # doubles have a relative error of 1e-16, double-double numbers an error of 1e-20 revolutions; integers serve
@@ -118,7 +120,11 @@ class Turning:
         return self._rate[0] * t * (1.0 + x * series) + self._push[0] * t * t * series
 
     def _near(self, t: Floats) -> Floats:
-        """Return ``share`` times the angle, in revolutions modulo 1, at times t with ``|decay t| <= dd.NEAR``."""
+        """Return ``factor`` times the angle of rotation, in revolutions modulo 1, at times near the start.
+
+        If ``|decay t| <= dd.NEAR``, the power series of (exp(x) - 1 - x)/x^2 is accurate; it is summed in sums of two
+        doubles.
+        """
         time = t, np.zeros_like(t)
         x = dd.multiply(time, self._decay)
         series = dd.second(x) if self._decay[0] else (0.5, 0.0)  # accurate for such times only
@@ -127,9 +133,11 @@ class Turning:
         return _less_whole_turns(dd.add(dd.multiply(dd.multiply(time, self._rate), first), pushed))
 
     def _far(self, t: Floats) -> Floats:
-        """Return ``share`` times the angle, in revolutions modulo 1, at times t with ``|decay t| > dd.NEAR``."""
-        # (push/decay) t + (rate - push/decay) (1 - exp(x))/decay: a steady and a transient part, which would cancel at
-        # smaller x
+        """Return ``factor`` times the angle of rotation, in revolutions modulo 1, at times far from the start.
+
+        If ``|decay t| > dd.NEAR``, the angle is computed, in sums of two doubles, as a steady plus a transient part.
+        """
+        # (push/decay) t + (rate - push/decay) (1 - exp(x))/decay, whose parts would cancel at smaller x
         time = t, np.zeros_like(t)
         high, low = dd.exponential(dd.multiply(time, self._decay))
         left = dd.multiply(dd.add((1.0, 0.0), (-high, -low)), self._rest)
@@ -139,7 +147,11 @@ class Turning:
         return np.array([self._exactly(time) for time in t.tolist()])
 
     def _integers(self, bits: int) -> tuple[int, int, int, int]:
-        """Return four constants of the angle for :meth:`_exactly`, as integers with ``bits`` bits after the point."""
+        """Return (final, rest, decay, ln 2) as integers with ``bits`` bits after the binary point, ln 2 with more.
+
+        With damping, ``factor`` times the angle is final*t + rest*(1 - exp(-decay*t)) revolutions; without damping, it
+        is final*t + rest*t^2, where final is the initial rate.
+        """
         if bits not in self._scaled:
             from mpmath import mp
 
@@ -147,18 +159,20 @@ class Turning:
             with mp.workprec(places + 8):
                 circle = 2 * int(mp.pi * mp.mpf(2) ** places)
             turns = [
-                (x.numerator * self._share.numerator << (bits + places))
-                // (x.denominator * self._share.denominator * circle)
+                (x.numerator * self._factor.numerator << (bits + places))
+                // (x.denominator * self._factor.denominator * circle)
                 for x in (final, rest)
             ]
             ln2 = int(dd.ln2(bits + _GUARD) * (1 << bits + _GUARD))
             self._scaled[bits] = turns[0], turns[1], (decay.numerator << bits) // decay.denominator, ln2
-        # with damping: final rate and factor of the transient part; without: initial rate and factor of the quadratic
-        # part; then the decay rate, and ln 2 with _GUARD more bits
         return self._scaled[bits]
 
     def _exactly(self, t: float) -> float:
-        """Return ``share`` times the angle at one time t, s, in revolutions from -1/2 to 1/2, computed in integers."""
+        """Return ``factor`` times the angle of rotation at the time t, s, in revolutions from -1/2 to 1/2.
+
+        It is computed in integers and rounded once. InputError is raised if -decay*t exceeds 1500: the angular velocity
+        is then out of the range of doubles.
+        """
         top, bottom = t.as_integer_ratio()
         growth = max(0.0, self._decay[0] * t)  # each factor 2 of the exponential costs one bit of the other terms
         if growth > _GROWN:

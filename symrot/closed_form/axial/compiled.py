@@ -35,7 +35,10 @@ _PI_TOP, _PI_BOTTOM = number.PI.as_integer_ratio()
 
 
 def parts(top: int, bottom: int, count: int) -> list[float]:
-    """Return ``count`` doubles whose sum approximates the ratio top/bottom, the largest first; beyond 2^200, 2^200."""
+    """Return ``count`` doubles, from the largest to the smallest, whose sum approximates the ratio top/bottom.
+
+    If the absolute value of the ratio is 2^200 or more, they are 2^200 (or -2^200) and zeros.
+    """
     sign, top = (-1, -top) if top < 0 else (1, top)
     size = top.bit_length() - bottom.bit_length()
     shift, doubles = _BITS - size, []
@@ -54,7 +57,7 @@ def parts(top: int, bottom: int, count: int) -> list[float]:
 
 
 class Loops(NamedTuple):
-    """One motion about one axis: its constants for the C struct `axial`, and the compiled loop for its samples."""
+    """One motion of a body driven about one axis: its constants, and the compiled C loop that computes its samples."""
 
     evaluate: Any
     constants: Any
@@ -124,14 +127,18 @@ class Constants:
         self._turns: dict[bool, tuple[int, int, list[float]]] = {}
 
     def head(self, transverse: bool) -> list[float]:
-        """Return the first 8 numbers of the C struct `axial`, with ``transverse`` as its member `across`."""
-        # transverse: whether there is a transverse angular velocity
+        """Return the first 8 numbers of the C struct `axial`: regime, time scale, across, first time, decay rates.
+
+        ``transverse`` says whether the body also rotates across the driven axis; it is the struct's member `across`.
+        """
         return [float(bool(self._decay)), 1.0, float(transverse), *self._head]
 
     def moving(self, rate: Fraction | float, transverse: bool) -> list[float]:
-        """Return the numbers of the C struct `axial` that depend on the initial angular velocity ``rate``, rad/s.
+        """Return the 18 numbers of the C struct `axial` that depend on the initial rate about the driven axis, rad/s.
 
-        They are the member `axial`, then the member `half`, or `lag` if ``transverse``.
+        The first four are rates about this axis, the member `axial`. The others are the constants of an angle: half the
+        angle of rotation (member `half`) or, if the body also rotates across the axis (``transverse``), the angle by
+        which the transverse angular velocity rotates in the body (member `lag`).
         """
         turn, bits, fixed = self._turns.get(transverse) or self._turning(transverse)
         top, bottom = rate.as_integer_ratio()
@@ -151,9 +158,10 @@ class Constants:
         ]  # fmt: skip
 
     def _turning(self, transverse: bool) -> tuple[int, int, list[float]]:
-        """Return (turn, bits, fixed): a rotation by 1 rad changes an angle by ``turn/2**bits`` revolutions.
+        """Return (turn, bits, fixed) for the angle whose constants :meth:`moving` returns.
 
-        ``fixed`` are constants of the angle for C.
+        If the body rotates by 1 rad about the driven axis, the angle changes by ``turn/2**bits`` revolutions. ``fixed``
+        are its constants for C that do not depend on the initial state: 3 numbers, or 8 without damping.
         """
         # the angle is lag if transverse, otherwise half the angle of rotation
         turn, bits = _HALF
@@ -191,11 +199,13 @@ class Constants:
         return Loops(evaluate, constants, ctypes.addressof(constants))
 
     def omega_rows(self, one: Any, other: Any) -> list[Any]:
-        """Return the matrix, row by row, that maps (cos(lag), sin(lag), axial rate) to the angular velocity.
+        """Return the 3x3 matrix, as a list of rows, that gives the angular velocity in the body at any time.
 
-        ``one`` and ``other`` are the transverse components at the start, rad/s.
+        The matrix is to be multiplied by the vector (d cos(lag), d sin(lag), rate about the driven axis): lag is the
+        angle by which the transverse angular velocity has rotated in the body, and d is the factor by which damping has
+        changed its length. ``one`` and ``other`` are the initial rates, rad/s, about the two axes that follow the
+        driven axis cyclically.
         """
-        # about the two axes that follow the driven axis cyclically; C multiplies cosine and sine by the damping factor
         rows: list[list[Any]] = [[0.0] * 3 for _ in range(3)]
         rows[self.axis][2] = 1.0
         rows[self.axis - 2][:2] = one, -other

@@ -1,9 +1,9 @@
 """Constants of many free bodies, computed in one call of a C function (:file:`bodies_at.c`).
 
-Each constant is a pair of doubles (hi, lo), whose sum approximates it to 31 digits. If 248 bits do not determine how to
-round it, the body is doubtful, and the caller computes the constant with fractions. The defect of a motion is |L|^2 - 2
-T I_mid (angular momentum L, kinetic energy T, middle moment of inertia I_mid), here over (largest moment times largest
-angular velocity)^2.
+Each constant is a pair of doubles (hi, lo), whose sum approximates it to 31 digits. A body is called doubtful if 248
+bits do not determine how to round one of its constants; the caller then computes them with fractions. The scaled defect
+of a motion is |L|^2 - 2 T I_mid (angular momentum L, kinetic energy T, middle moment of inertia I_mid) over (largest
+moment times largest component of the angular velocity)^2.
 """
 
 from collections.abc import Sequence
@@ -65,21 +65,26 @@ def fixed_body(moments: Sequence[Fraction], axes: Sequence[Fraction]) -> NDArray
 
 
 def rates_of_body(body: NDArray[np.uint64], omega: Floats) -> tuple[Floats, Floats, Doubtful]:
-    """Return the components of n angular velocities along a body's principal axes, shape (n, 6): hi, lo of each.
+    """Return (rates, defects, doubtful) of the motions of one body from n angular velocities ``omega``, shape (n, 3).
 
-    Also return the defects of the motions, shape (n, 2), and the indices of the motions that are doubtful.
+    ``rates``, shape (n, 6), are the components along the principal axes: hi, lo of the first, then of the others.
+    ``defects``, shape (n, 2), are hi and lo of |L|^2 - 2 T I_mid, scaled as the module says. ``doubtful`` are the
+    indices of the motions for which the last digit of a number is uncertain. ``body`` comes from :func:`fixed_body`.
     """
     n = len(omega)
     rates, exact, doubtful = np.empty((n, 6)), np.empty((n, 8)), np.empty(n, np.uint8)
     omega = np.ascontiguousarray(omega)
     _functions()[0](n, body.ctypes.data, address(omega), address(rates), address(exact), doubtful.ctypes.data)
-    # the last digit of a doubtful motion is not certain, so that the caller must compute it exactly
+    # the caller must compute doubtful motions exactly
     return rates, exact[:, 6:], np.flatnonzero(doubtful)
 
 
 def defects(moments: Floats, omega: Floats) -> tuple[Floats, Doubtful]:
-    """Return the scaled defects of n free bodies, shape (n, 2), and the indices of the doubtful bodies."""
-    # moments, omega: principal moments, and angular velocities along the principal axes
+    """Return (defects, doubtful) of n free bodies, from their principal moments and their rates about these axes.
+
+    ``defects``, shape (n, 2), are hi and lo of |L|^2 - 2 T I_mid, scaled as the module says. ``doubtful`` are the
+    indices of the bodies for which the last digit of this number is uncertain.
+    """
     n = len(omega)
     exact, doubtful = np.empty((n, 8)), np.empty(n, np.uint8)
     moments, omega = np.ascontiguousarray(moments), np.ascontiguousarray(omega)
@@ -88,19 +93,23 @@ def defects(moments: Floats, omega: Floats) -> tuple[Floats, Doubtful]:
 
 
 class PrincipalBodies(NamedTuple):
-    """Arguments of the C function symrot_free_body_prepare for many bodies, and the indices of doubtful bodies."""
+    """Constants of n free bodies, arguments of the C function symrot_free_body_prepare, each number as hi and lo.
 
-    moments: Floats  # (n, 6)
-    rates: Floats  # (n, 6)
-    exact: Floats  # (n, 8)
-    axes: Floats  # (n, 26)
-    doubtful: Doubtful  # the last digit of a constant is not certain
+    ``doubtful`` are the indices of the bodies for which the last digit of a constant is uncertain.
+    """
+
+    moments: Floats  # (n, 6): principal moments
+    rates: Floats  # (n, 6): components of omega along the principal axes
+    exact: Floats  # (n, 8): differences of the moments, and the scaled defect
+    axes: Floats  # (n, 26): matrix and quaternion of the principal axes
+    doubtful: Doubtful
 
 
 def principal_bodies(entries: Sequence[Column], omega: Floats) -> PrincipalBodies | None:
-    """Return the constants of free bodies, whose principal axes are computed from inertia tensors.
+    """Return the constants of n free bodies, whose principal axes are computed from their inertia tensors.
 
-    ``entries`` are the components xx, yy, zz, xy, xz and yz, kg m^2. None if a Fraction is outside the range of pairs.
+    ``entries`` are the tensor components xx, yy, zz, xy, xz and yz, kg m^2; a Fraction holds for all bodies. The result
+    is None if a Fraction is nonzero and not between SMALLEST and LARGEST in absolute value.
     """
     n, tensors, arrays = len(omega), _Tensors(terms=_TERMS), []
     for k, entry in enumerate(entries):

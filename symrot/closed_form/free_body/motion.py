@@ -125,7 +125,7 @@ class FreeRigidBody:
 
 
 def _differences(moments: Sequence[Number], omega: Sequence[Number]) -> list[float]:
-    """Return I2 - I3, I3 - I1, I1 - I2 and the scaled :class:`Defect` of a free body as a list hi, lo, hi, lo, .."""
+    """Return I2 - I3, I3 - I1, I1 - I2 of a free body and its :class:`Defect` as one list hi, lo, hi, lo, .."""
     # exactly, since differences of doubles would lose digits
     integers, shared = over_common_denominator(moments)
     return [*gaps(integers, shared), *Defect(integers)(over_common_denominator(omega)[0])]
@@ -143,7 +143,11 @@ def gaps(i: list[int], shared: int) -> list[float]:
 
 
 class Defect:
-    """The defect |L|^2 - 2 T I_mid of a free body over (largest moment times largest rate)^2, from its rates."""
+    """A function from the rates of one free body to |L|^2 - 2 T I_mid over (largest moment times largest rate)^2.
+
+    L is the angular momentum, T the kinetic energy, I_mid the middle moment. The moments are given as integers in any
+    common unit, since the result does not depend on units.
+    """
 
     def __init__(self, i: list[int]) -> None:
         middle = sorted(i)[1]
@@ -151,7 +155,11 @@ class Defect:
         self._largest = max(i)
 
     def __call__(self, w: list[int]) -> tuple[float, float]:
-        """Return the scaled defect of the motion with the integer body rates ``w``, as a sum of two doubles."""
+        """Return |L|^2 - 2 T I_mid over (largest moment times largest rate)^2 as two doubles (hi, lo).
+
+        ``w`` are the rates about the principal axes, as integers in any common unit. A result that is negligible
+        relative to the summands of |L|^2 - 2 T I_mid is returned as zero.
+        """
         x, y, z = w
         one, two, three = self._one * x * x, self._two * y * y, self._three * z * z
         defect, largest = one + two + three, self._largest * max(abs(x), abs(y), abs(z))
@@ -162,7 +170,6 @@ class Defect:
             abs(one), abs(two), abs(three)
         ):
             return 0.0, 0.0
-        # divided by the square of (largest moment times largest rate)
         return quotient(defect, largest * largest)
 
 

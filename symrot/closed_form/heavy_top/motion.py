@@ -159,12 +159,15 @@ class Frame:
 
     @property
     def plain(self) -> bool:
-        """Whether the axes of the formulas are the axes of the scene, so that attitudes need no conversion."""
+        """Whether this frame's axes are those in which states are given, so that attitudes need no conversion."""
         # the symmetry axis is the body's third axis, and up is the direction of z
         return self._before is self._after is None
 
     def start(self, quaternion: Sequence[Number]) -> list[float]:
-        """Convert an attitude to the axes of the formulas; return hi and lo of each component of the quaternion."""
+        """Convert the attitude ``quaternion`` to the axes of this frame; return the components as a list of 8 doubles.
+
+        These are hi and lo of q0, then of q1, q2 and q3, where each sum hi + lo is a component.
+        """
         # rounded as in symrot.closed_form.arithmetic.pairs.attitude
         if self.plain:
             return attitude(quaternion)

@@ -233,8 +233,11 @@ class PortableFreeBody:
 
 
 def _differences(inertia: list[float], omega: list[float], w: list[Any]) -> tuple[list[Any], Any]:
-    """Return the differences I2 - I3, I3 - I1, I1 - I2 of the moments of inertia, and the defect of the motion."""
-    # inertia, omega: lists hi, lo, hi, lo, .. of doubles, along the principal axes
+    """Return (differences, defect): [I2 - I3, I3 - I1, I1 - I2], and |L|^2 - 2 T I_mid, as mpmath numbers.
+
+    ``inertia`` and ``omega`` are lists hi, lo, hi, lo, .. of doubles, along the principal axes. ``w`` are the same
+    components of omega in another unit, with zeros for negligible ones, which the defect then leaves out too.
+    """
     moments = [Fraction(high) + Fraction(low) for high, low in zip(inertia[::2], inertia[1::2], strict=True)]
     rates = [Fraction(high) + Fraction(low) for high, low in zip(omega[::2], omega[1::2], strict=True)]
     middle = sorted(moments)[1]

@@ -1,8 +1,8 @@
 """The motion of a symmetric heavy top, computed by mpmath and NumPy without a C compiler.
 
-The formulas are those of :file:`heavy_top.h`; alpha and beta are the Cayley-Klein parameters of the attitude, quotients
-of theta series. Numbers have 120 digits, so the constants are computed directly from the roots of the cubic, without
-the rearrangements that doubles need.
+The formulas are those of :file:`heavy_top.h`. The Cayley-Klein parameters of the attitude, alpha = q0 + i q3 and
+beta = q1 + i q2, are quotients of theta series. Numbers have 120 digits, so the constants are computed directly from
+the roots of the cubic, without the rearrangements that doubles need.
 """
 
 from typing import Any
@@ -158,9 +158,11 @@ class PortableHeavyTop:
         return numerators, kappas, leads, speed, v, below
 
     def _functions(self, i: int, place: Any) -> tuple[list[Any], list[Any], list[Any], list[Any]]:
-        """Return four lists: the terms, at ``place``, of the theta series of alpha (i = 0) or beta (i = 1).
+        """Return the functions in the theta series of a Cayley-Klein parameter at ``place``, the argument z or v.
 
-        They are the terms of the real part, of the imaginary part, and the derivatives of both.
+        i = 0 means alpha = q0 + i q3, i = 1 means beta = q1 + i q2. The four lists are the functions in the series of
+        the real part and of the imaginary part, then their derivatives: for alpha in the regime circular sin(n z),
+        cos(n z), n cos(n z) and -n sin(n z) for n = 1, 3, 5, ..
         """
         odd = (
             [2 * n + 1 for n in range(TERMS)] if self.regime == "circular" or i == 0 else [2 * n for n in range(TERMS)]
@@ -188,8 +190,11 @@ class PortableHeavyTop:
         self, numerators: Any, kappas: Any, leads: Any, speed: Any, place: Any, below: Any, start: Any, across: Any,
         spin: Any,
     ) -> None:  # fmt: skip
-        """Set the constant factors of the theta series so that alpha and beta agree with the initial state."""
-        # across: w1 + i w2, spin: w3 at the start; the other arguments are results of _circular or _hyperbolic
+        """Set the constant factors of the theta series so that they give the initial state at the start.
+
+        ``start`` is [alpha, beta], the Cayley-Klein parameters q0 + i q3 and q1 + i q2 at the start; ``across`` is
+        w1 + i w2 and ``spin`` is w3. The other arguments are results of :meth:`_circular` or :meth:`_hyperbolic`.
+        """
         alpha, beta = start
         initial_rates = [
             mpc(0, spin / 2) * alpha - beta * mp.conj(across) / 2,
@@ -246,8 +251,12 @@ class PortableHeavyTop:
             quaternion[:] = np.stack([a.real, a.imag, b.real, b.imag], axis=1) @ self.attitude.T
 
     def _values(self, t: Floats) -> tuple[Any, Any, Floats]:
-        """Return alpha and beta, then the time derivatives of both, then the phase in half revolutions, at times t."""
-        # alpha and beta are not normalised and do not include their phase factors
+        """Return ((alpha, beta), (their time derivatives), phase) at the times t.
+
+        alpha = q0 + i q3 and beta = q1 + i q2 are not normalised, and lack the factors exp(i angle) that
+        :meth:`evaluate` applies. ``phase`` is the phase of the elliptic functions in half revolutions, less a whole
+        number of them; it is 0 in the regimes steady, circular and separatrix.
+        """
         none = np.zeros_like(t)
         if self.regime == "steady":
             a, b = (np.full(t.shape, x, dtype=complex) for x in self.steady)

@@ -93,9 +93,9 @@ class PortableSpinUp:
         here = dd.add(self._sweep[0], dd.multiply(t, self._sweep[1]))
         close = (np.abs(here[0]) < self._edge) & (self._wide == 0.0)
         upper = (here[0] > 0.0) & (self._wide == 0.0)
-        ways: list[tuple[Any, Callable[..., tuple[Any, Any]], Floats]] = [(close, self._close, self._near)]
+        ways: list[tuple[Any, Callable[..., tuple[Any, Any]], Floats]] = [(close, self._near_resonance, self._near)]
         for k, chosen in enumerate((~upper & ~close, upper & ~close)):
-            ways.append((chosen, lambda t, here, k=k: self._far(self._sides[k], t, here), self._sides[k][3]))
+            ways.append((chosen, lambda t, here, k=k: self._off_resonance(self._sides[k], t, here), self._sides[k][3]))
         for chosen, way, mapping in ways:
             if chosen.any():
                 a, b = way(*((x[0][chosen], x[1][chosen]) for x in (t, here)))
@@ -103,10 +103,13 @@ class PortableSpinUp:
                 a, b = a * turn.conj(), b * turn
                 quaternion[chosen] = np.stack([a.real, b.real, b.imag, a.imag], axis=1) @ mapping.T
 
-    def _far(self, side: Any, t: dd.Pair, omega: dd.Pair) -> tuple[Any, Any]:
-        """Return q0 + i q3 and q1 + i q2 of the attitude relative to the rotating axes, far from resonance."""
-        # side: constants of the motion before or after resonance; omega: the axial rate at the times t; the formulas
-        # are in symrot.closed_form.spin_up.motion
+    def _off_resonance(self, side: Any, t: dd.Pair, omega: dd.Pair) -> tuple[Any, Any]:
+        """Return (q0 + i q3, q1 + i q2) of the attitude at times t far from resonance, by the asymptotic series.
+
+        The attitude is relative to axes that rotate with the transverse angular velocity; ``omega`` is the axial rate
+        in them, zero at resonance. ``side`` has the motion's constants before resonance or after it.
+        """
+        # the formulas are in symrot.closed_form.spin_up.motion
         time, start, delta, _ = side
         square = dd.multiply(self._across, self._across)
         here, there = (dd.add(dd.multiply(x, x), square) for x in (omega, start))
@@ -141,8 +144,12 @@ class PortableSpinUp:
             turn * (n2 * first - 1j * (n0 * second + n1 * first)),
         )
 
-    def _close(self, _: dd.Pair, omega: dd.Pair) -> tuple[Any, Any]:
-        """Return q0 + i q3 and q1 + i q2 of the attitude relative to the rotating axes, near resonance."""
+    def _near_resonance(self, _: dd.Pair, omega: dd.Pair) -> tuple[Any, Any]:
+        """Return (q0 + i q3, q1 + i q2) of the attitude near resonance, by Taylor polynomials.
+
+        The attitude is relative to axes that rotate with the transverse angular velocity; ``omega`` is the axial rate
+        in them, zero at resonance.
+        """
         # Taylor polynomials in x = Omega/sqrt(s) give the rotation since resonance (x = 0)
         assert self._table is not None
         sign = np.where(omega[0] < 0.0, -1.0, 1.0)

@@ -15,7 +15,7 @@ from symrot.errors import CompilerError
 __all__ = ["TABLE", "Compiled", "functions", "limits"]
 
 TABLE = int(spin_up_series.NEAR) * PIECES * (DEGREE + 1) * 4
-"""Number of doubles in the table of Taylor polynomials."""
+"""Number of doubles in the table of Taylor polynomials by which attitudes near resonance are computed."""
 
 _LACKING, _LOST = 1, 2  # status of samples that could not be computed, see spin_up.h
 
@@ -29,10 +29,7 @@ class _Functions(NamedTuple):
 
 
 def limits() -> tuple[float, float, float]:
-    """Return NEAR, WIDE and MOST for C: the smallest x and kappa for the series, and the largest phase, rad.
-
-    They are explained in :mod:`symrot.closed_form.spin_up.series`.
-    """
+    """Return the constants NEAR, WIDE and MOST of :mod:`symrot.closed_form.spin_up.series`, as arguments for C."""
     return spin_up_series.NEAR, spin_up_series.WIDE, spin_up_series.MOST
 
 
@@ -84,11 +81,14 @@ class Compiled:
         self.longest: float = constants[1] / constants[0]
 
     def _prepared(self, table: Floats | None) -> tuple[Any, int, Floats | None]:
-        """Return the constants of the motion, computed by C, as a ctypes array; then its address and ``table``."""
+        """Return (constants, address, table): the motion's constants, computed by C, a ctypes array and its address.
+
+        ``table`` is the argument: None, or an array of ``TABLE`` doubles that C fills with the Taylor polynomials for
+        samples near resonance.
+        """
         bound = functions()
         constants = bound.record()
         place = ctypes.addressof(constants)
-        # an array table is filled with the Taylor polynomials for samples near resonance
         if bound.prepare(self._axis, self._numbers, bound.limits(*limits()), address(table), place):
             raise CompilerError(
                 "expected a C compiler that rounds after every operation, got one that fuses some, such as a*b + c; "

@@ -114,10 +114,10 @@ class Integers:
         return Near(rounded(self._sweep.across * self._scale / self._root))
 
     def _side(self, omega: Fraction) -> int:
-        """Return which formula holds at the axial rate ``omega``.
+        """Return which formula gives the attitude at the scaled axial rate ``omega``, which is zero at resonance.
 
-        1 or -1: the asymptotic series after or before resonance; 0: the series near resonance. If the asymptotic series
-        is accurate everywhere, always 1.
+        1 or -1: the asymptotic series after or before resonance; 0: the Taylor series near resonance. The result is
+        always 1 if the asymptotic series is accurate at every rate.
         """
         if self._sweep.series.wide:
             return 1
@@ -128,7 +128,7 @@ class Integers:
 
     @cached_property
     def _resonance(self) -> Quaternion:
-        """The rotation of the body from the start to resonance (Omega = 0), as a quaternion of integers."""
+        """The rotation of the body from the start to resonance (Omega = 0), as a quaternion in units of 2^-FIXED."""
         side, sweep = self._side(self._start), self._sweep
         if not side:
             return conjugate(self._near.quaternion(self._x(self._start)))
@@ -137,9 +137,10 @@ class Integers:
         return product(leaving, conjugate(self._near.quaternion(Fraction(side * int(NEAR)))))
 
     def _begin(self, side: int) -> tuple[Fraction, Fraction, Quaternion]:
-        """Return the time at which the formulas for one side of resonance begin, with Omega and the rotation then.
+        """Return (time, Omega, rotation) where the asymptotic series on one side of resonance begin to be used.
 
-        ``side`` is -1 before resonance and 1 after it.
+        ``side`` is -1 before resonance and 1 after it. Omega is the axial rate at that time, and the rotation is from
+        the start to then. If the motion starts on this side, they are 0, the initial rate, and the identity.
         """
         if self._side(self._start) == side:
             return Fraction(0), self._start, ONE
@@ -148,7 +149,11 @@ class Integers:
         return rounded((edge - self._start) / self._sweep.s), edge, product(self._resonance, crossed)
 
     def _constants(self, near: bool) -> list[float]:
-        """Return the constants with which NumPy computes samples, in the order of the C struct in :file:`spin_up.h`."""
+        """Return the constants with which NumPy computes samples, in the order of the C struct in :file:`spin_up.h`.
+
+        ``near`` says whether some samples lie near resonance, or on its other side; otherwise the constants that only
+        these need are zero.
+        """
         sweep, back, wide = self._sweep, conjugate(self._axes), self._sweep.series.wide
         turns = [x / (4 * number.PI) for x in self._turn]
         inverse = self._scale / self._root if near else Fraction(0)
@@ -180,9 +185,10 @@ class Integers:
         return 2.0 * MOST / (even + math.sqrt(even * even + 4.0 * (s + growth) * MOST)) / float(self._scale)
 
     def _far(self, first: float, last: float) -> bool:
-        """Return whether the asymptotic series certainly holds at all times from ``first`` to ``last``.
+        """Return whether one asymptotic series certainly gives the attitude at all times from ``first`` to ``last``.
 
-        It holds at all times of a wide sweep, and else at times far from resonance, on one side of it.
+        It does if kappa = W/sqrt(s) is WIDE or more (W the transverse angular velocity, s the rate at which the axial
+        rate grows), or if all these times are far from resonance, on the same side of it.
         """
         start, s, scale = float(self._start), float(self._sweep.s), float(self._scale)
         ends, edge = (start + s * first * scale, start + s * last * scale), float(self._edge)

@@ -83,7 +83,11 @@ class SpinUp:
         return rates, attitudes
 
     def _by_integers(self, times: Floats, rates: Floats | None, attitudes: Floats | None) -> None:
-        """Write, computed in integers, the samples with too many revolutions for double-double numbers."""
+        """Overwrite the rows of ``rates`` and ``attitudes`` at times with too many revolutions for sums of two doubles.
+
+        Their samples are computed in integers; an array that is None is skipped. InputError is raised if the angular
+        velocity at the first or the last of all times exceeds the range of doubles.
+        """
         for time in (float(times.min()), float(times.max())):
             if not self.integers.finite(time):
                 raise InputError(f"expected times at which the angular velocity is a finite number, got {time!r} s")

@@ -1,4 +1,4 @@
-"""Rotation of a driven symmetric body between two times far from resonance, in fractions, to 90 digits.
+"""Rotation of a driven symmetric body between two times far from resonance, computed in fractions and integers.
 
 In axes that rotate with the body's transverse angular velocity (length W), the body's angular velocity is
 ``(W, 0, Omega)``, with ``Omega = Omega0 + s t``; resonance is at Omega = 0. The body rotates about a vector n (see
@@ -78,7 +78,12 @@ def _polynomial(coefficients: Floats, y: float) -> float:
 
 
 class Sweep:
-    """A driven body far from resonance, given by W (``across``), s and the asymptotic series for kappa^2 = W^2/s."""
+    """The rotation of a driven symmetric body far from resonance.
+
+    ``across`` is W, the constant length of the transverse angular velocity, rad/s; ``s`` is the rate, rad/s^2, at which
+    Omega, the axial rate in the axes that rotate with the transverse angular velocity, grows. ``series`` are the
+    asymptotic series for kappa^2 = W^2/s.
+    """
 
     def __init__(self, across: Fraction, s: Fraction, series: Series) -> None:
         self.across, self.s, self.series = across, s, series
@@ -86,22 +91,32 @@ class Sweep:
         self.unit = self._square + (0 if series.wide else Fraction(NEAR) ** 2 * s)
 
     def speed(self, omega: Fraction) -> Fraction:
-        """Return S = sqrt(Omega^2 + W^2), rad/s, at the axial angular velocity Omega = ``omega``."""
+        """Return the angular speed S = sqrt(omega^2 + across^2), rad/s, in the rotating axes at the axial rate."""
         return number.sqrt(rounded(omega * omega + self._square))
 
     def _direction(self, omega: Fraction) -> tuple[float, float, float]:
-        """Return ``W/S``, ``Omega/S`` and the variable y of the polynomials in ``series``, at Omega = ``omega``."""
-        # y = unit/S^2; W/S and Omega/S are sine and cosine of the angle between (W, 0, Omega) and the third axis
+        """Return (across/S, omega/S, y) when the axial rate is ``omega``, where S is the speed.
+
+        The first two are the direction (across, 0, omega)/S of the angular velocity; y is the variable of the
+        polynomials in ``self.series``.
+        """
+        # y = unit/S^2
         speed = self.speed(omega)
         return float(self.across / speed), float(omega / speed), float(rounded(self.unit / (speed * speed)))
 
     def delta(self, omega: Fraction) -> float:
-        """Return the small angle delta, rad, at the axial rate Omega = ``omega``."""
+        """Return delta, rad, the angle of rotation in excess of the integral of the speed, at the axial rate ``omega``.
+
+        Between two times the body rotates by the integral of the speed plus the change of delta.
+        """
         _, cosine, y = self._direction(omega)
         return cosine * _polynomial(self.series.e, y)
 
     def axes(self, omega: Fraction) -> Quaternion:
-        """Return the rotation that maps the third axis to the vector n, at the axial rate Omega = ``omega``."""
+        """Return the rotation that maps the third axis to n, the vector about which the body rotates.
+
+        n is near the direction of the angular velocity when the axial rate is ``omega``; the asymptotic series give it.
+        """
         sine, cosine, y = self._direction(omega)
         g, c = _polynomial(self.series.g, y), _polynomial(self.series.c, y)
         m1, m2 = Fraction(sine * cosine * y * y * g), Fraction(sine * y * c)
@@ -113,7 +128,10 @@ class Sweep:
         return product(turn, fixed(number.unit((m3, -m2, m1, Fraction(0)))))
 
     def angle(self, start: Fraction, time: Fraction) -> Fraction:
-        """Return the angle, rad, by which the body rotates about n in ``time`` s, beginning at Omega = ``start``."""
+        """Return the angle, rad, by which the body rotates about the vector n in ``time`` s.
+
+        ``start`` is the axial rate, rad/s, at the beginning of this time.
+        """
         omega = start + self.s * time
         here, there, product = self.speed(omega), self.speed(start), rounded(omega * start)
         if product >= 0:
@@ -127,6 +145,9 @@ class Sweep:
         return rounded(steady) + Fraction(self.delta(omega)) - Fraction(self.delta(start))
 
     def rotation(self, start: Fraction, time: Fraction) -> Quaternion:
-        """Return the body's rotation in ``time`` s, which begins at Omega = ``start``, as a quaternion of integers."""
+        """Return the body's rotation in ``time`` s, as a quaternion of integers in units of 2^-FIXED.
+
+        ``start`` is the axial rate, rad/s, at the beginning of this time.
+        """
         end = conjugate(self.axes(start + self.s * time))
         return product(self.axes(start), about_third(self.angle(start, time)), end)

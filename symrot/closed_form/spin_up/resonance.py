@@ -22,10 +22,13 @@ from symrot.closed_form.spin_up.series import NEAR
 __all__ = ["DEGREE", "PIECES", "Near"]
 
 PIECES = 4
-"""Number of Taylor polynomials for one unit of x."""
+"""Number of Taylor polynomials of the attitude per unit of the scaled time x: each holds on an interval of 1/4."""
 
 DEGREE = 19
-"""Degree of the polynomials: (r/2)^20/20!/8^20 < 1e-20 for r < 13.5."""
+"""Degree of the Taylor polynomials of the attitude near resonance, in the scaled time x.
+
+On an interval of half width 1/8, the next term is below (r/2)^20/20!/8^20 < 1e-20, where r < 13.5 is the speed.
+"""
 
 _TERMS = 34  # terms of a series in integers
 
@@ -33,7 +36,11 @@ _Spinor = tuple[int, int, int, int]  # the complex pair alpha, beta as q0, q3, q
 
 
 class Near:
-    """Attitudes of a driven body near resonance, as a function of the scaled time x, for one value of kappa."""
+    """Attitudes of a driven body near resonance, where its axial rate Omega in the rotating axes is zero.
+
+    They depend on the scaled time x = Omega/sqrt(s), from -NEAR to NEAR, and on kappa = W/sqrt(s), where s is the rate
+    at which Omega grows, and W the transverse angular velocity.
+    """
 
     def __init__(self, kappa: Fraction) -> None:
         self._kappa = self._fixed(kappa)
@@ -49,8 +56,11 @@ class Near:
         return (value.numerator << FIXED) // value.denominator
 
     def _coefficients(self, spinor: _Spinor, place: Fraction) -> list[_Spinor]:
-        """Return the coefficients of the Taylor series of the attitude about the scaled time x = ``place``."""
-        # spinor: the attitude there; the denominator of place is a power of two
+        """Return the coefficients of the Taylor series of the attitude about the scaled time x = ``place``.
+
+        ``spinor`` is the attitude at x = ``place``, as integers q0, q3, q1, q2 in units of 2^-FIXED; the coefficients,
+        from the power 0 on, are of the same kind. The denominator of ``place`` must be a power of two.
+        """
         top, shift, kappa = place.numerator, place.denominator.bit_length() - 1, self._kappa
         coefficients: list[_Spinor] = [spinor]
         before: _Spinor = (0, 0, 0, 0)
@@ -75,7 +85,10 @@ class Near:
         return total[0], total[1], total[2], total[3]
 
     def quaternion(self, x: Fraction) -> Quaternion:
-        """Return the attitude at the scaled time x as a quaternion of integers, with an error of 1e-30."""
+        """Return the attitude at the scaled time x, relative to resonance (x = 0), with an error of 1e-30.
+
+        The components of the quaternion are integers in units of 2^-FIXED.
+        """
         piece = min(int(abs(x) * PIECES), len(self._series) - 1)
         q0, q3, q1, q2 = self._sum(self._series[piece], abs(x) - Fraction(2 * piece + 1, 2 * PIECES))
         # at -x, q1 and q2 have the opposite signs

@@ -23,16 +23,22 @@ from symrot.closed_form.build import Floats
 __all__ = ["DEGREE", "MOST", "NEAR", "WIDE", "Series", "series"]
 
 NEAR = 10.0
-"""Smallest x for which the series is accurate for every kappa."""
+"""Scaled time x = Omega/sqrt(s) from which on the asymptotic series are accurate, whatever kappa is.
+
+Omega is the axial rate, zero at resonance, and s the rate at which it grows.
+"""
 
 WIDE = 9.0
-"""Smallest kappa for which the series is accurate for every x."""
+"""Value of kappa = W/sqrt(s) from which on the asymptotic series are accurate at every scaled time, even at resonance.
+
+W is the transverse angular velocity, and s the rate at which the axial rate grows.
+"""
 
 MOST = 1e13
 """Phase, rad, above which double-double numbers have too few digits."""
 
 DEGREE = 12
-"""Degree of the polynomials that replace the series."""
+"""Degree of the polynomials in y that replace the asymptotic series for the vector n and the angle delta."""
 
 _ORDERS = 14  # number of powers of v^2
 _SMALL = 0.2  # kappa^2/radius2: below it the angle is counted from infinity
@@ -40,7 +46,11 @@ _TERMS = 32  # powers of kappa^2 v that are used where kappa^2 v <= _SMALL
 
 
 class Series(NamedTuple):
-    """Coefficients of polynomials in y, lowest power first, for ``v^2 g``, ``v c`` and ``e``."""
+    """Three polynomials in y = radius2/r^2, as coefficients, lowest power first, in place of the asymptotic series.
+
+    ``g`` and ``c`` give the components, normal to the angular velocity (kappa, 0, x), of the vector n about which the
+    body rotates; ``e`` gives the angle delta. The module defines these functions, r and radius2.
+    """
 
     # whether kappa is above WIDE: the series are then accurate at every x, otherwise for x above NEAR
     wide: bool
@@ -58,7 +68,10 @@ def _nodes() -> tuple[Floats, Floats]:
 
 
 def _first(share: float, v: float) -> Floats:
-    """Return the coefficients of a as a polynomial in y; ``share`` is kappa^2/radius2, ``v`` is 1/radius2."""
+    """Return the coefficients of a(v) as a polynomial in y = radius2 v, where (kappa/r) a is the first component of n.
+
+    ``share`` is kappa^2/radius2, and ``v`` is 1/radius2, the value of v at y = 1.
+    """
     # n' = n x (kappa, 0, x) gives c = -(a + 2 v a'), b - a = -v^2 g with g = 3 c + 2 v c', and 2 (1 - kappa^2 v) b' =
     # kappa^2 (b + c), so that each coefficient follows from the previous ones
     order, total = {0: 1.0}, [0.0] * (3 * _ORDERS + 1)
@@ -76,10 +89,11 @@ def _first(share: float, v: float) -> Floats:
     return np.array(total)
 
 
-def _angle(share: float, v: float, h: Floats) -> Floats:
-    """Return e at the values of y in :func:`_nodes`; ``share`` and ``v`` as for :func:`_first`.
+def _excess(share: float, v: float, h: Floats) -> Floats:
+    """Return e at the values of y in :func:`_nodes`: delta = (x/r) e is the excess of the angle of rotation, rad.
 
-    ``h`` are the coefficients of the polynomial in y with ``d delta/dx = kappa^2 v^(5/2) h``.
+    ``share`` is kappa^2/radius2, and ``v`` is 1/radius2. ``h`` are the coefficients of the polynomial in y with
+    ``d delta/dx = kappa^2 v^(5/2) h``, where v is here 1/r^2.
     """
     powers = _nodes()[1]
     if share >= _SMALL:  # from x = 0
@@ -95,8 +109,10 @@ def _angle(share: float, v: float, h: Floats) -> Floats:
 
 
 def series(kappa2: float, inverse: float) -> Series:
-    """Return the three polynomials in y for kappa^2 = ``kappa2``; ``inverse`` is 1/kappa^2."""
-    # kappa2 or inverse may be too small for a double, and is then 0
+    """Return the polynomials that replace the asymptotic series for one value of kappa = W/sqrt(s).
+
+    ``kappa2`` is kappa^2, and ``inverse`` is 1/kappa^2; one of them may be too small for a double, and is then 0.
+    """
     wide = kappa2 >= WIDE * WIDE
     radius2 = kappa2 if wide else NEAR * NEAR + kappa2
     share, v = (1.0, inverse) if wide else (kappa2 / radius2, 1.0 / radius2)
@@ -107,6 +123,6 @@ def series(kappa2: float, inverse: float) -> Series:
     first2 = share * y * (1.0 - share * y) * (v * y) ** 4 * g * g
     second2 = share * y * (v * y) ** 2 * c * c
     h = np.asarray(np.linalg.solve(square, -c / (1.0 + np.sqrt(1.0 - first2 - second2))), np.float64)
-    e = _angle(share, v, h)
+    e = _excess(share, v, h)
     coefficients = np.asarray(np.linalg.solve(square, np.stack([v * v * g, v * c, e], axis=1)), np.float64)
     return Series(wide, coefficients[:, 0], coefficients[:, 1], coefficients[:, 2])

@@ -47,7 +47,7 @@ class Disc(NamedTuple):
 
 
 Parts = tuple[float, float, float | None]
-"""The fields of a disc; this plain tuple takes a tenth of the time of a ``Disc`` to make."""
+"""A disc as a plain tuple (centre, radius, log_size), which takes a tenth of the time of a :class:`Disc` to make."""
 
 
 def _product(a: Parts, b: Parts) -> Parts:
@@ -90,9 +90,10 @@ def _inverse(a: Parts) -> Parts:
 
 
 def _sqrt(a: Disc, whole: float) -> Disc:
-    """Return a disc that contains the square roots of all numbers in a disc.
+    """Return a disc that contains the square roots of all numbers in the disc ``a``.
 
-    The radius is multiplied by ``whole`` unless all these numbers have a positive real part.
+    A step misses only a small share of a change, but may miss the whole of a root near zero: unless all numbers in
+    ``a`` have a positive real part, the radius is multiplied by ``whole``, which is 1 divided by this share.
     """
     root = math.sqrt(max(a.centre, 0.0))
     if a.centre > a.radius:
@@ -211,8 +212,9 @@ class Deviations:
     ) -> list[float]:
         """Return a bound of the change of each rate while time and states vary around ``t`` and ``y``.
 
-        Time varies within ``radius``, s, and state k within ``radii[k]``; all are complex. The radius of a square root
-        near zero is multiplied by ``whole``. A bound is infinite if a pole may lie in the discs.
+        Time varies within ``radius``, s, and state k within ``radii[k]``; all are complex. A step misses only a small
+        share of a change, but may miss the whole of a square root near zero: the radius of such a root is multiplied by
+        ``whole``, which is 1 divided by this share. A bound is infinite if a pole may lie in the discs.
         """
         # The caller counts the missed share of a deviation as overlooked; of a square root near zero a step may
         # overlook all: it is multiplied by whole, 1/missed share.
@@ -235,7 +237,10 @@ class Deviations:
     def _discs(
         self, t: float, radius: float, whole: float, y: Sequence[float], radii: Sequence[float]
     ) -> dict[int, Parts]:
-        """Return a map from the index of each series to the disc that contains the values of its term."""
+        """Return discs that contain the values of the intermediate results of the rates, for the arguments of a call.
+
+        The key of a disc is the index of its intermediate result in the series of the enclosure.
+        """
         discs: dict[int, Parts] = {}
         for i, series, operands, weights in self._rules:
             rule = series.rule

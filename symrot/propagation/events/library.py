@@ -62,7 +62,11 @@ def _with_pi(node: Node) -> Node:
 
 
 class SearchLibrary:
-    """A loaded library that locates events, built from :func:`event_library_source`: its C functions and its sizes."""
+    """A compiled library that locates zeros of formulas along a motion, loaded: its C functions and three numbers.
+
+    ``states`` and ``events`` are the numbers of states and of formulas; ``bytes`` is the memory that a search needs.
+    Its source is from :func:`event_library_source` or :func:`guard_library_source`.
+    """
 
     def __init__(self, path: str) -> None:
         library: Any = ctypes.CDLL(path)
@@ -82,4 +86,4 @@ class SearchLibrary:
 
 
 search_library = cache(SearchLibrary)
-"""Return the library at a path, loaded once."""
+"""Function that takes the path of a compiled library and returns its :class:`SearchLibrary`, each loaded only once."""

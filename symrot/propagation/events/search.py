@@ -74,9 +74,10 @@ class _Search:
         self.again, self.spent, self.allowed = False, 0.0, MOST_OPERATIONS
 
     def entries(self, piece: Piece) -> tuple[list[list[float]], ZerosNotSeparated | None]:
-        """Return the intervals of ``piece``, steps of the motion, that may contain zeros, and an error or None.
+        """Return the intervals in ``piece``, a part of the motion, that may contain zeros, and an error or None.
 
-        An interval is [event, start, end, sign before, sign after].
+        An interval is [event, start, end, sign before, sign after]. If the limit of operations is exceeded, the
+        intervals reach only to the time of the error.
         """
         edges, rows = np.ascontiguousarray(piece.edges), np.ascontiguousarray(piece.rows)
         count, listed, answer = len(rows), [], (ctypes.c_int64 * 3)()
@@ -114,7 +115,7 @@ class _Search:
         return count
 
     def sign(self, event: int, t: float, piece: Piece) -> int:
-        """Return the sign of an event's formula at the time t in ``piece``, consecutive steps of the motion.
+        """Return the sign of an event's formula at the time t, which lies in ``piece``, a part of the motion.
 
         The sign is 0 if rounding errors are larger than the value, or if the formula has no value at t.
         """
@@ -122,9 +123,10 @@ class _Search:
         return 0 if sign is None else sign
 
     def sign_or_none(self, event: int, t: float, piece: Piece) -> int | None:
-        """Return the sign of an event's formula at the time t in ``piece``; 0 if rounding errors are larger.
+        """Return the sign of an event's formula at the time t, which lies in ``piece``, a part of the motion.
 
-        Return None if the formula has no value at t, as the root of a negative number.
+        The sign is 0 if rounding errors are larger than the value. Return None if the formula has no value at t, as the
+        root of a negative number.
         """
         edges, side = piece.edges, 1.0 if piece.edges[-1] >= piece.edges[0] else -1.0
         place = int(np.searchsorted(side * edges, side * t, "left")) - 1
@@ -222,7 +224,10 @@ def search(
 
 
 def _zeros_at(searcher: _Search, events: Iterable[int], t: float, y: Sequence[float]) -> list[list[float]]:
-    """Return an interval [event, t, t, 0, 0] for each of the ``events`` that is zero at the time t and the states y."""
+    """Return an interval for each of the ``events`` whose formula is zero, up to rounding, at time t and states y.
+
+    The interval is [event, t, t, 0, 0]: it begins and ends at t, and the signs before and after are not known.
+    """
     # a fitted polynomial is zero there only up to rounding: a body at rest got a tiny velocity
     still = Piece(np.array([t, t + 1.0]), np.array([[t, 1.0, 0.0, 1.0, *y]]))
     return [[float(event), t, t, 0.0, 0.0] for event in sorted(events) if searcher.sign_or_none(event, t, still) == 0]
@@ -250,7 +255,7 @@ def _open_doubts(doubts: list[tuple[int, float]], zeros: list[EventZero], t0: fl
 def signs_at_ends(
     path: Path | str, formulas: Sequence[str], p: Sequence[float], piece: Piece
 ) -> tuple[list[int], list[int]]:
-    """Return the signs of formulas just after the start of ``piece``, consecutive steps of a motion, and at its end.
+    """Return two lists: the signs of formulas just after the start of ``piece``, a part of a motion, and at its end.
 
     A sign is 0 if the value is smaller than its rounding errors.
     """
@@ -277,9 +282,10 @@ def _first_sign(searcher: _Search, number: int, piece: Piece) -> int:
 
 
 def _merged(entries: list[list[float]], last: float) -> tuple[list[list[float]], list[list[float]]]:
-    """Join adjacent intervals that may contain zeros; return those that end before the time ``last``, and the others.
+    """Join adjacent intervals that may contain zeros; return the complete intervals, and those that may continue.
 
-    The others reach ``last``, the end of a piece, and may continue in the next piece.
+    An interval may continue in the next piece of the motion if it ends at ``last``, the end of this piece, with the
+    sign 0.
     """
     whole: list[list[float]] = []
     open_ones: dict[float, list[float]] = {}
@@ -302,9 +308,9 @@ def _merged(entries: list[list[float]], last: float) -> tuple[list[list[float]],
 
 
 def _sign_before_end(searcher: _Search, event: int, piece: Piece) -> int:
-    """Return the sign of an event's formula just before the end of ``piece``, consecutive steps of a motion.
+    """Return the sign of an event's formula just before the end of ``piece``, a part of a motion.
 
-    The sign is 0 if the value is smaller than its rounding errors.
+    The sign is 0 if the values are smaller than their rounding errors in the whole of ``piece``.
     """
     first, last = float(piece.edges[0]), float(piece.edges[-1])
     width, side = 4 * NEAR * max(abs(last), abs(last - first)), 1.0 if last >= first else -1.0
@@ -320,8 +326,11 @@ def _settled(
     searcher: _Search, piece: Piece, events: Sequence[Event], entries: list[list[float]], t0: float, left: list[int],
     zeros: list[EventZero],
 ) -> float | None:  # fmt: skip
-    """Append the zeros in the intervals ``entries`` to ``zeros``; return the time of a terminal event, s, or None."""
-    # left counts down, for each event, the zeros after which it ends the motion (0: never)
+    """Append the zeros in ``entries`` to ``zeros``; return the time, s, of the zero that ends the motion, or None.
+
+    An entry is an interval [event, start, end, sign before, sign after]. ``left`` has, for each event, the number of
+    zeros that are left until it ends the motion, and is counted down; 0: the event never ends it.
+    """
     first, last = float(piece.edges[0]), float(piece.edges[-1])
     side = 1.0 if last >= first else -1.0
 

@@ -1,4 +1,4 @@
-"""From plans to motions: the motion of a plan by a chosen method."""
+"""Motions from plans: a plan has the equations of a scene, a :class:`Choice` the method by which they are solved."""
 
 from dataclasses import replace
 
@@ -42,7 +42,10 @@ def stepped_motion(plan: Plan, choice: Choice, tolerance: float) -> SteppedMotio
 
 
 def on_own_clock(plan: Plan, choice: Choice, tolerance: float) -> SteppedMotion | SciPyMotion:
-    """Return the integrated motion of a plan, with time counted from its start if its rates depend on time."""
+    """Return the motion of a plan, integrated by the method of ``choice`` (in C, or by SciPy).
+
+    Time is counted from the start of the motion if its rates depend on time.
+    """
     setup = _setup(plan, choice, tolerance)
     timed, steps_in_c = setup.kernel.rates.uses("t"), choice.method in ("taylor", "dop853")
     if not timed:

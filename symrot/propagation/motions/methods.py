@@ -90,7 +90,7 @@ class ClosedFormMotion(RestartableMotion):
         return (omega,) if quaternion is None else (omega, quaternion), Stats(0, 0, 0, perf_counter() - began)
 
     def dense(self, span: tuple[float, float]) -> Callable[[Floats], Floats]:
-        """Return a function that takes n times, s, and returns the states, shape (n, N); ``span`` is not used."""
+        """Return a function that takes n times, s, and returns the N states, shape (n, N); ``span`` is not used."""
         return lambda t: self.integrate(t)[0]
 
 
@@ -119,9 +119,9 @@ class SteppedMotion(ShiftableMotion, SteppedInC):
 
     @cached_property
     def taylor_parameters(self) -> list[float]:
-        """The values of the parameters of the Taylor library: first those of the rates, each as one double.
+        """The values of the parameters of the Taylor library: the parameters of the rates, each as one double.
 
-        Those of the output quantities follow, each as two doubles whose sum is the value.
+        The parameters of the output quantities follow, each as two doubles whose sum is the value.
         """
         return [*self.rate_parameters, *self.setup.quantity_binding(self.plan)]
 
@@ -140,21 +140,24 @@ class SteppedMotion(ShiftableMotion, SteppedInC):
 
     @cached_property
     def _clock(self) -> dop853.Clock:
-        """Function from an epoch, s, to a library, whose rates take the time since the epoch, and their parameters."""
+        """Function that takes an epoch, s, and returns a compiled library and the values of the rates' parameters.
+
+        The rates in the library take the time since the epoch.
+        """
         # the epoch is a time on the clock of the motion
         return time_shift.clock(self.setup.shifted, self.plan.constants, self.epoch)
 
     def steps(self, times: Floats, in_order: bool) -> tuple[Floats, Stats]:
-        """Return the states at times, s after the epoch, shape (n, N), and the cost.
+        """Return the N states at n times, s after :attr:`epoch`, shape (n, N), and the cost.
 
         ``in_order``: the times are finite and never decrease.
         """
         return self.stepping.sample_sorted(times, in_order)
 
     def dense(self, span: tuple[float, float]) -> Recording:
-        """Return a function from n times, s, within ``span`` to the states, shape (n, N), by recorded steps.
+        """Return a function that takes n times within ``span``, s, and returns the N states, shape (n, N).
 
-        Times and span are counted from the epoch.
+        It evaluates recorded steps. Times and span are counted from :attr:`epoch`.
         """
         recording = self.stepping.restarted().record(span)
         recording.epoch = self.epoch
@@ -177,14 +180,18 @@ class SciPyMotion(ShiftableMotion):
 
     @cached_property
     def _clock(self) -> Callable[[float], Any]:
-        """Function from an epoch, s, to rates in Python, which take the time since the epoch, and their parameters."""
+        """Function that takes an epoch, s, and returns rates in Python and the values of their parameters.
+
+        These rates take the time since the epoch.
+        """
         # the epoch is a time on the clock of the motion
         return time_shift.clock(self.setup.shifted, self.plan.constants, self.epoch, python_rates)
 
     def deviations(self, parameters: Sequence[float]) -> "Deviations | None":
-        """Return bounds on torque changes (``Deviations``) for SciPy's steps.
+        """Return bounds (``Deviations``) on how far the rates, with these parameters, can change near a time and state.
 
-        None if no torque can have a pulse that a step misses, or if the rates have no Taylor series.
+        SciPy's steps need them so as not to miss a short pulse of a torque. Return None if no torque can have such a
+        pulse, or if the rates have no Taylor series.
         """
         if self.setup.deviations is None:
             return None
@@ -201,7 +208,7 @@ class SciPyMotion(ShiftableMotion):
         return Options(self.choice.method, blocks, scales, deviations=deviations, clock=clock)
 
     def steps(self, times: Floats, in_order: bool) -> tuple[Floats, Stats]:
-        """Return the states at times, s after the epoch, shape (n, N), and the cost."""
+        """Return the N states at n times, s after :attr:`epoch`, shape (n, N), and the cost."""
         from symrot.propagation.steppers import fallback
 
         start = (self.rate_parameters, self.plan.initial_state, self.start)
@@ -209,9 +216,9 @@ class SciPyMotion(ShiftableMotion):
         return fallback.integrate(self.rates, *start, times, self.tolerance, self.options(self.rate_parameters))
 
     def dense(self, span: tuple[float, float]) -> Recording:
-        """Return a function from n times, s, within ``span`` to the states, shape (n, N), by SciPy's interpolants.
+        """Return a function that takes n times within ``span``, s, and returns the N states, shape (n, N).
 
-        Times and span are counted from the epoch.
+        It evaluates SciPy's interpolants. Times and span are counted from :attr:`epoch`.
         """
         from symrot.propagation.steppers import fallback
 

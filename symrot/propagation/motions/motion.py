@@ -99,9 +99,10 @@ class Motion(ABC):
         return dict(zip(names, self.setup.quantity_binding(self.plan)[::2], strict=True))
 
     def evaluate(self, t: Floats, states: Floats, names: Sequence[str]) -> Floats:
-        """Return output quantities of the kernel at times ``t``, s after the epoch, shape (n, len(names)).
+        """Return output quantities of the kernel at n times ``t``, s after :attr:`epoch`, shape (n, len(names)).
 
-        The kernel calls omega_1 ``"omega_1 of t"``.
+        ``states`` are the N states at these times, shape (n, N). ``names`` are the kernel's names of the quantities,
+        such as ``"omega_1 of t"`` for the component omega_1.
         """
         columns = [name.removesuffix(" of t") for name in names]
         if set(columns) <= set(self.plan.states):  # every quantity is a state
@@ -126,20 +127,21 @@ class Motion(ABC):
 
     @abstractmethod
     def follow(self, times: Floats, in_order: bool = False) -> tuple[Floats | tuple[Floats, ...], Stats]:
-        """Return the states at ``times`` of the scene, s, shape (n, N), and the cost.
+        """Return the N states at n ``times`` of the scene, s, shape (n, N), and the cost.
 
-        A closed form returns two arrays, omega and quaternion. ``in_order``: the times are finite and never decrease.
+        A closed form returns omega and, if the attitude is computed, the quaternion as separate arrays in a tuple.
+        ``in_order``: the times are finite and never decrease.
         """
 
     @abstractmethod
     def dense(self, span: tuple[float, float]) -> Callable[[Floats], Floats]:
-        """Return a function from n times, s, within ``span`` to the states, shape (n, N).
+        """Return a function that takes n times within ``span``, s, and returns the N states, shape (n, N).
 
-        Times and span are counted from the epoch.
+        Times and span are counted from :attr:`epoch`.
         """
 
     def integrate(self, times: Floats, in_order: bool = False) -> tuple[Floats, Stats]:
-        """Return the states at times of the scene, s, in one array, shape (n, N), and the cost of the motion."""
+        """Return the N states at n times of the scene, s, in one array, shape (n, N), and the cost of the motion."""
         # a closed form has separate arrays for angular velocity and attitude
         states, stats = self.follow(times, in_order)
         return np.concatenate(states, axis=1) if isinstance(states, tuple) else states, stats
@@ -201,13 +203,13 @@ class ShiftableMotion(RestartableMotion):
 
     @abstractmethod
     def steps(self, times: Floats, in_order: bool) -> tuple[Floats, Stats]:
-        """Return the states at times, s after the epoch, shape (n, N), and the cost.
+        """Return the N states at n times, s after :attr:`epoch`, shape (n, N), and the cost.
 
         ``in_order``: the times are finite and never decrease.
         """
 
     def follow(self, times: Floats, in_order: bool = False) -> tuple[Floats, Stats]:
-        """Return the states at times of the scene, s, shape (n, N), and the cost.
+        """Return the N states at n times of the scene, s, shape (n, N), and the cost.
 
         ``in_order``: the times are finite and never decrease.
         """

@@ -110,9 +110,10 @@ class Setup:
 
     @cached_property
     def deviations(self) -> "Callable[[Mapping[str, float]], Deviations] | None":
-        """Function from the parameters of the rates to bounds on torque changes (``Deviations``), for SciPy's steps.
+        """Function that makes bounds (``Deviations``) from the values of the rates' parameters, by name.
 
-        None if no torque can have a pulse that a step misses, or if the rates have no Taylor series.
+        The bounds say how far the rates can change near a time and state; SciPy's steps need them so as not to miss a
+        short pulse of a torque. None if no torque can have such a pulse, or if the rates have no Taylor series.
         """
         return formula_deviations(self.plan, self.kernel)
 

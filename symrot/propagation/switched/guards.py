@@ -1,6 +1,7 @@
-"""The guards of a motion under torques with switching functions: their values, signs and zeros.
+"""The guards of a motion under torques with switching functions (sign, abs, ..): their values, signs and zeros.
 
-The *guard* of a function is its argument; its *mode* is the number that replaces it in formulas.
+The *guard* of a function is its argument; its *mode* is the number that replaces it in formulas. A function is *held*
+while its guard stays at zero and the equations determine its value.
 """
 
 import math
@@ -118,7 +119,10 @@ class Guards(RunState):
         return before >= 0.0 >= after and before > after
 
     def _inside(self, mode: str) -> set[str]:
-        """Return the names in the argument of ``mode``: x and the mode of sign(y), for abs(x + sign(y))."""
+        """Return the names of the variables and modes in the argument of the function with the mode ``mode``.
+
+        For abs(x + sign(y)) these are x and the mode of sign(y), the name of the number that replaces sign(y).
+        """
         return set(names(self.by_name[mode].guard))
 
     def _negative(

@@ -1,4 +1,8 @@
-"""What follows when the argument of a switching function is zero: it passes zero, stays there, or leaves again."""
+"""What follows when the argument of a switching function is zero: it passes zero, stays there, or leaves again.
+
+The *guard* of a function (sign, abs, ..) is its argument; its *mode* is the number that replaces it in formulas. A
+function is *held* while its guard stays at zero and the equations determine its value.
+"""
 
 import math
 from collections.abc import Callable, Sequence
@@ -26,7 +30,11 @@ PERTURBATION, PARALLEL = 1e-6, 1e-6  # of time and states, for slopes; relative 
 SHORT = 1e-9  # part of the span: distance beyond an instant without rates at which formulas are evaluated
 CHATTERING = 1e-9  # part of the span: CHATTER switches within it count as infinitely many
 SwitchState = tuple[frozenset[tuple[str, int]], frozenset[str]]
-"""A state of all switching functions: the modes that are not held, with their values, and the names of held modes."""
+"""The values of all switching functions (sign, abs, ..): pairs (name, value), and the names of the held functions.
+
+The argument of a held function stays at zero; its value follows from the equations. A name is the name of the mode, the
+number that replaces the function in formulas.
+"""
 
 
 class ModeChanges(Guards):
@@ -61,7 +69,10 @@ class ModeChanges(Guards):
         self.left, self.visited, self.released, self.rested = set(), {}, set(), set()
 
     def _coincident(self, regime: Regime, active: list[bool], values: list[float], most: int) -> Guard | None:
-        """Return the guard of another function (sign, floor, ..) that has to switch at the present time, or None."""
+        """Return the guard of a function (sign, floor, ..) that has not yet switched now but has to, or None.
+
+        The guard is negative just after the present time or, if ``most`` is 0, at most zero.
+        """
         # Functions that switch at one time do so one after the other; the rates may have no value until the last one
         # has, such as a root of a negative argument.
         h = self.side * SHORT * self.span
@@ -71,7 +82,7 @@ class ModeChanges(Guards):
         guards = [
             (sign, guard)
             for guard, on, sign in zip(regime.guards, active, signs, strict=True)
-            # most: -1 for guards that become negative, 0 if those that stay zero count too
+            # most: largest sign of a guard that counts, -1 or 0
             if on and sign <= most and guard.mode not in self.held and not self.flipped.get(guard.mode)
         ]
         return min(guards, key=lambda pair: pair[0])[1] if guards else None
@@ -95,14 +106,20 @@ class ModeChanges(Guards):
         )
 
     def _no_longer_held(self) -> None:
-        """Release an argument of sign that the equations no longer hold at zero since another function switched."""
+        """Release an x in sign(x) that does not stay at zero any more, because another function has switched.
+
+        Raise IntegrationStopped if there is no such x: the continuation of the motion is then not unique.
+        """
         released = self._released_by_another(solvable=False)
         if released is None:
             raise self._not_unique()
         self._change(*released)
 
     def _change(self, mode: str, change: int) -> None:
-        """Change the value of a function (sign, ..) as :attr:`Guard.change` says, or hold its argument at zero."""
+        """Change the value of the function (sign, ..) with the mode ``mode``, or hold its argument at zero.
+
+        ``change`` is as in :class:`Guard`: the new sign, 0 for the opposite sign, or 1 or -1 to add to a floor.
+        """
         kind = self.by_name[mode].kind
         self.left.add((mode, self.modes[mode]))
         self.visited.setdefault(self._state(), len(self.order))
@@ -147,9 +164,10 @@ class ModeChanges(Guards):
             self._wake(other)
 
     def _leaves(self, mode: str, held: frozenset[str], modes: Modes) -> bool:
-        """Return whether x in sign(x), which is now zero, gets the sign ``modes[mode]`` in the motion from here on.
+        """Return whether x in sign(x), zero now, gets the sign ``modes[mode]`` if sign(x) has this value from here on.
 
-        The other functions have the values in ``modes``, and the guards ``held`` stay at zero.
+        ``mode`` is the name of the number that replaces sign(x). The other functions have the values in ``modes``,
+        except that the arguments of the functions ``held`` stay at zero.
         """
         regime = self._regime(modes, held)
         rates, values = regime.bound(modes, self.zero)
@@ -177,29 +195,34 @@ class ModeChanges(Guards):
         return None
 
     def _returns(self, mode: str) -> bool:
-        """Return whether a function such as sign(x) must be held at x = 0: its switch would restore earlier values.
+        """Return whether a function such as sign(x) must be held at x = 0, because its switch would lead to a cycle.
 
-        All functions would have values that they had before at this time, and the switches would repeat without end.
+        After the switch, all functions would have the same values as once before at the present time, so that the
+        switches would repeat without end. A function with only a kink, such as abs, is not held if a function with a
+        jump has switched in this cycle.
         """
         first = self.visited.get(self._state(flip=mode))
         if first is None:
             return False
-        # a function with only a kink, such as abs, is not held if one with a jump has switched since
         jumps = any(not is_continuous(self.by_name[other]) for other in self.order[first:])
         return not (jumps and is_continuous(self.by_name[mode]))
 
     def _state(self, flip: str = "", hold: str = "") -> SwitchState:
-        """Return the values of all functions (sign, ..), and which are held.
+        """Return the values of all functions (sign, ..) that are not held, and the names of the held functions.
 
-        The function ``flip`` first changes its sign, or ``hold`` becomes held.
+        A held function has its argument fixed at zero. If named, the function ``flip`` first changes its sign, or the
+        function ``hold`` is first added to the held functions.
         """
         modes = {**self.modes, flip: -self.modes[flip]} if flip else self.modes
         held = self.held | {self.system.twins[hold][0][0]} if hold else self.held
         return frozenset((mode, value) for mode, value in modes.items() if mode not in held), held
 
     def _jumped(self, mode: str) -> bool:
-        """Return whether a function in the argument of ``mode`` switched after ``mode``: sign, in abs(x + sign(y))."""
-        # in abs(x + sign(y)), if sign switched after abs, the argument of abs has jumped: abs may switch again
+        """Return whether a function inside another one, which has the mode ``mode``, has switched later than that one.
+
+        In abs(x + sign(y)): whether sign(y) has switched after abs, at the same present time. The argument of abs has
+        then jumped, and abs may switch again.
+        """
         last = len(self.order) - self.order[::-1].index(mode)
         return bool(self._inside(mode) & set(self.order[last:]))
 
@@ -329,7 +352,11 @@ class ModeChanges(Guards):
         return bool(changed)
 
     def _check_held_alone(self) -> None:
-        """Raise IntegrationStopped if x, held at zero for sign(x), also keeps the argument of another jump at zero."""
+        """Raise IntegrationStopped if the motion slides along the jumps of two functions at once.
+
+        While x in sign(x) is held at zero, the argument of another function is then zero too, whose value at its jump
+        the equations do not determine.
+        """
         # The equations determine one value between -1 and 1 for a held sign, not the two values in sign(omega_1) +
         # sign(omega_1 + omega_1^3), whose arguments are zero together.
         y = self.y.tolist()

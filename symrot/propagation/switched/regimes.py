@@ -49,7 +49,10 @@ class Guard(NamedTuple):
 
 
 class RegimeParameters(NamedTuple):
-    """Parameters of the equations between two switches, as functions of the scene time at which the clock shows 0."""
+    """Parameters of the equations between two switches, in which time is counted from an epoch.
+
+    The first three are functions of the epoch, which is a time of the scene, s (:class:`ShiftedParameters`).
+    """
 
     rates: ShiftedParameters
     # of the formulas whose zeros end the motion
@@ -121,7 +124,10 @@ class Regime:
             yield Guard(mode, f"1 - ({guard})", 1, where)
 
     def _parameters_under(self, modes: Modes) -> RegimeParameters:
-        """Return the parameters of the equations for given ``modes``, which still depend on when the clock shows 0."""
+        """Return the parameters of the equations, as functions of the epoch, for given values of sign, abs, ..
+
+        ``modes`` has these values; the epoch is the time of the scene from which the equations count time.
+        """
         key = tuple(modes.values())
         if key not in self._parameters:
             values = {name: Fraction(value) for name, value in modes.items()}
@@ -141,7 +147,8 @@ class Regime:
     def values(self, modes: Modes, zero: Instant) -> dict[str, float]:
         """Return the values, by name, of the modes and of the parameters in the arguments of sign, abs, ..
 
-        A mode is the number that stands for such a function; the clock shows 0 at ``zero``.
+        A mode is the number that replaces such a function. The equations count time from the instant ``zero``, on which
+        the values of the parameters depend.
         """
         numbers = self._parameters_under(modes).guards.parameters(zero.exact)
         return {name: number for (name, _), number in zip(self.parameters, numbers, strict=True)} | {
@@ -149,9 +156,10 @@ class Regime:
         }
 
     def bound(self, modes: Modes, zero: Instant) -> tuple[list[float], list[float]]:
-        """Return two lists of parameters: for the stepper, and for the search for switches.
+        """Return two lists of values of parameters: for the stepper, and for the search for switches.
 
-        ``modes`` are the values of the functions (sign, abs, ..); the clock shows 0 at ``zero``.
+        ``modes`` has the values of the functions (sign, abs, ..). The equations count time from the instant ``zero``,
+        on which the parameters depend.
         """
         rates, guards, quantities, invariants = self._parameters_under(modes)
         fixed = rates.fixed and guards.fixed and quantities.fixed
@@ -183,9 +191,9 @@ class Regime:
         return dict((*values, *zip(self.plan.states, y.tolist(), strict=True)))
 
     def rates_since(self, modes: Modes, zero: Instant) -> Callable[[float], list[float]] | None:
-        """Return a function from a new zero of the clock, s after ``zero``, to the parameters of the rates.
+        """Return a function that takes a later instant, s after ``zero``, and returns the parameters of the rates.
 
-        None: the rates do not depend on time.
+        With these parameters the rates take the time since that instant. Return None if they do not depend on time.
         """
         rates = self._parameters_under(modes).rates
         return None if rates.fixed else lambda since: rates.parameters(zero.exact + Fraction(since))
@@ -213,7 +221,10 @@ class Regime:
 
 
 def _distance(switch: Switch) -> Node:
-    """Return a formula for where a function switches: x for sign(x), at 0; x - n for floor(x), at 0 and 1."""
+    """Return a formula whose value shows when a function switches: x for sign(x), x - n for floor(x) with the value n.
+
+    The sign switches where x is 0, the floor where x - n is 0 or 1.
+    """
     # n, the present value of floor(x), is subtracted exactly, before rounding: far from t = 0 the difference has far
     # fewer digits than x. Where it is 0 or 1, x leaves the interval from n to n + 1.
     return switch.guard if switch.kind == "sign" else ("-", switch.guard, ("symbol", switch.mode))

@@ -1,8 +1,8 @@
-"""A motion under torques with switching functions (sign, abs, ..), followed through all switches to one end.
+"""A motion under torques with switching functions (sign, abs, ..), computed from its start through all switches.
 
 The *guard* of a function is its argument; its *mode* is the number that replaces it in formulas. For given modes the
 motion is smooth: a *regime*. In *sliding* motion a guard is *held* at zero. *Twins* are modes of guards that are zero
-together. The class of the run builds on those of the other modules: state of the run, guards, changes of modes.
+together. :class:`SwitchedRun` builds on the classes of other modules: state of the motion, guards, changes of modes.
 """
 
 import math
@@ -237,7 +237,11 @@ class SwitchedRun(ModeChanges):
     def _hop(
         self, regime: Regime, active: list[bool], rates: list[float], t: float, y: Floats, error: IntegrationStopped
     ) -> tuple[Piece, Callable[[Floats], Floats], Guard | None] | None:
-        """Return a short linear motion (a hop) past a time where a stepper is stuck; None if none is accurate."""
+        """Return a short linear motion (hop) past the time t at which a stepper is stuck; None if it is not accurate.
+
+        The result is its polynomial, a function from times to states, and the guard that is zero at its end; the last
+        is None for a hop away from the switch at t = 0.
+        """
         # Steps shrink to zero where a torque has no derivative, though its impulse is finite: sqrt(1 - t) before a
         # switch at 1 s, sqrt(t - 1) after it. If the impulse is less than the tolerance, the states may change
         # linearly.

@@ -17,7 +17,7 @@ CHATTER = 50  # number of recent switches whose times are stored
 
 
 class RunState:
-    """Present state of a motion that is followed to one end; time is counted from the last switch.
+    """Present state of a motion under torques that switch, during its computation; the last switch is at time 0.
 
     Attributes
     ----------
@@ -39,9 +39,9 @@ class RunState:
     recent : deque of Instant
         The times of the last switches.
     rounding : RoundingSum
-        The rounding errors of the torques' formulas of the time in all steps so far.
+        The sum of the rounding errors, in all steps so far, of torque formulas that contain the time.
     rounded_beyond : list of float
-        Time of the scene, s, beyond which these errors may exceed the tolerance; empty if they do not.
+        One time of the scene, s, beyond which these rounding errors may exceed the tolerance; empty if they do not.
     """
 
     def __init__(self, motion: Motion, end: float, modes: Modes) -> None:
@@ -62,16 +62,19 @@ class RunState:
         return Instant(self.motion.start) - self.zero
 
     def note_rounding(self, zero: Instant) -> None:
-        """Store the time from which rounding matters as a time of the scene; the steps counted time from ``zero``."""
+        """Store the first time from which rounding errors may matter, if any, in :attr:`rounded_beyond`.
+
+        The sum of the errors has this time in s after ``zero``; it is converted to a time of the scene.
+        """
         if not self.rounded_beyond and self.rounding.beyond is not None:
             self.rounded_beyond.append(zero.after(self.rounding.beyond).high)
 
     def clock(self, regime: Regime, stepped: Any) -> Callable[[float], tuple[Any, list[float]]] | None:
-        """Return a function from a new zero of the clock, s after the last switch, to the rates and their parameters.
+        """Return a function that takes an epoch, s after the last switch, and returns rates and their parameters.
 
-        None: the rates do not depend on time.
+        The rates are ``stepped``, a library or a Python function; with these parameters they take the time since the
+        epoch. Return None if the rates do not depend on time.
         """
-        # the epoch: time, s after the last switch, at which the stepper sets its clock to 0
+        # the epoch is the time at which the stepper sets its clock to 0
         parameters = regime.rates_since(self.modes, self.zero)
-        # stepped, the rates as library or Python function, is the same for all epochs
         return (lambda since: (stepped, parameters(since))) if parameters else None

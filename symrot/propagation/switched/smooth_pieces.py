@@ -1,6 +1,7 @@
-"""Pieces of a smooth motion up to the next switch, by any stepper: polynomials, and functions from times to states.
+"""The smooth motion up to the next switch in pieces, groups of consecutive steps, as a stepper computes them.
 
-A *window* is the interval of time that SciPy follows before the search for a switch.
+Each piece has two forms: polynomials in time, and a function from times to states. A *window* is the interval of time
+that SciPy follows before the search for a switch.
 """
 
 from collections.abc import Callable, Iterator
@@ -134,7 +135,10 @@ class SciPyPieces:
         return min(max(2.0 * likely, SHORTEST * run.span), run.span / WINDOWS)
 
     def _judge_pace(self, t: float) -> None:
-        """Raise IntegrationStopped if the motion exceeds the limit of evaluations, or would by far after time t."""
+        """Raise IntegrationStopped if the motion, now at the time t, s, exceeds the limit of evaluations.
+
+        Do so also if the motion would exceed the limit by far before its end at its present pace.
+        """
         from symrot.propagation.steppers.fallback import MAX_EVALUATIONS, PATIENCE
 
         run = self.run

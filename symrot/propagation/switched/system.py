@@ -49,10 +49,11 @@ class SwitchedSystem:
 
     @cached_property
     def twins(self) -> dict[str, list[tuple[str, int]]]:
-        """The functions that switch together with each sign or abs, as in sign(omega_3) and abs(2*omega_3).
+        """The functions that switch together with each sign or abs in one torque, as sign(omega_3) and abs(2*omega_3).
 
-        A map from each mode to a list of pairs (mode, 1 or -1), which includes this mode; -1 means that the argument
-        has the opposite sign of the first argument in the list.
+        A function is named by its mode, the number that replaces it in formulas. A map from each mode to a list of
+        pairs (mode, 1 or -1), which includes this mode; -1 means that the argument has the opposite sign of the first
+        argument in the list.
         """
         numbers: dict[str, Node] = {name: ("number", value) for name, value in self.constants.items()}
         for mode in self.switches:
@@ -70,9 +71,10 @@ class SwitchedSystem:
         return twins
 
     def tied(self, held: frozenset[str]) -> dict[str, tuple[str, int]]:
-        """Return the functions that switch together with functions ``held`` at their jumps.
+        """Return the functions that switch together with the functions ``held``, whose arguments stay at zero.
 
-        A map from name to (name of a held function, 1 or -1); -1 means that their arguments have opposite signs.
+        A map from the name of a function to (name of a held function, 1 or -1); -1 means that the arguments of these
+        two functions have opposite signs.
         """
         # held: the argument of the function stays at zero; a function that switches at the same time follows
         return {twin: (mode, sign) for mode in held for twin, sign in self.twins[mode] if twin != mode}
@@ -108,7 +110,10 @@ class SwitchedSystem:
 
     @property
     def undecided(self) -> set[str]:
-        """The names of sign, abs and the like, not floor, whose arguments depend on states and start at zero."""
+        """The names of functions such as sign and abs, not floor, whose arguments depend on states and start at zero.
+
+        The name of a function is the name of its mode, the number that replaces it in formulas.
+        """
         # whether they start with 1 or -1 follows from the motion, not from the initial state alone
         return self._initial_modes[1]
 
@@ -187,8 +192,11 @@ class SwitchedSystem:
 
 
 def _switches(torque: FormulaTorque) -> list[Switch]:
-    """Return the switching functions (sign, abs, ..) of a torque, with the names that the plan gives to their modes."""
-    # the name of a mode in the plan: with the prefix of its torque, such as torque2_
+    """Return the switching functions (sign, abs, ..) of a torque, each with the name of its mode in the plan.
+
+    The mode is the number that replaces the function in formulas; its name begins with the prefix of the torque, such
+    as ``torque2_``.
+    """
     own = {name: f"{torque.prefix}{name}" for name in torque.parameters}
     return [
         Switch(
