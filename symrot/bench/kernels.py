@@ -50,7 +50,7 @@ SHAPES = ("one", "cached", "many")
 
 @dataclass
 class Contestant:
-    """One tool's version of a kernel: its operations, and its times per sample, s, for each shape of input."""
+    """One tool's version of a kernel: its operations, and its times per sample, s, for each of the SHAPES of input."""
 
     name: str
     operations: Counter[str]
@@ -112,9 +112,9 @@ def _addresses(name: str, shape: str, count: int, place: int) -> Any:
 
 
 def _timed(run: Callable[[int, int], object], samples: int) -> Callable[[int], float]:
-    """Return a function that times ``run(repeats, place)`` and returns seconds per sample.
+    """Return a function ``measure(place)`` that times ``run(repeats, place)`` and returns seconds per sample.
 
-    Its argument ``place`` is the number of a memory block.
+    ``place`` is the number of the memory block (:func:`_block`) with inputs and outputs.
     """
     repeats, elapsed = 1, 0.0
     # so many repeats that the clock measures the time accurately
@@ -138,7 +138,8 @@ def _in_c(
     """Compile the C ``text`` of the kernel ``name`` with its drivers; return timing functions and outputs.
 
     The functions, one for each shape of input, return seconds per sample; their argument is the number of a memory
-    block. The outputs are those of the batch in the cache. ``prepare`` sets up the loaded library.
+    block. The outputs are those for the batch that is small enough for the processor's cache, ``"cached"`` of SHAPES.
+    ``prepare`` sets up the loaded library.
     """
     loaded = ctypes.CDLL(str(build_cache.build(text, f"bench_{name}", FLAGS)))
     prepare(loaded)

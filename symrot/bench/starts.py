@@ -89,7 +89,7 @@ def _start(scene: Scene) -> tuple[Floats, Floats]:
 
 
 def _medians(one: Callable[[], object], other: Callable[[], object], rounds: int) -> tuple[float, float]:
-    """Time two functions alternately; return the median time of the first, us, and how much longer it takes, us."""
+    """Time two functions alternately; return two medians in us: the time of ``one``, and its excess over ``other``."""
     times = np.empty((rounds, 2))
     for k in range(rounds):
         began = process_time_ns()
@@ -117,9 +117,10 @@ def _call(propagate: Propagator, start: dict[str, Any], rounds: int) -> tuple[fl
 
 
 def _in_c(motion: Any, initial: Any, rounds: int) -> float:
-    """Return the microseconds that C takes for the constants of a closed form from a new initial state.
+    """Return the time, us, in which C computes the constants of a closed form from a new initial state.
 
-    0 for steppers, which have no such constants, and for motions driven about an axis, whose constants count as Python.
+    It is 0 for steppers, which have no such constants, and for the closed forms of libraries ``axial`` and ``spin_up``,
+    for which the time in C is not separated from the time in Python.
     """
     if motion.choice.method != "exact" or motion.form.library in ("axial", "spin_up"):
         return 0.0

@@ -2,8 +2,8 @@
 
     python -m symrot.bench.stepper [--tolerance 1e-9] [--stop 1000] [--rounds 15]
 
-Times are ratios within one run. The handwritten stepper is compiled with ``-O2`` and ``-O3``; in long double at a
-tolerance of 1e-17 it is the reference.
+The handwritten stepper is compiled with ``-O2`` and ``-O3``; in long double at a tolerance of 1e-17 it is the reference
+for errors. Compare the times of one run of this program only with each other.
 """
 
 import argparse

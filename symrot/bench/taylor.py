@@ -226,10 +226,7 @@ def measure(name: str, rounds: int = 9, settings: bool = False, scale: float = 1
 
 
 def best_of(runs: Iterable[Measured], error: float, names: Sequence[str]) -> Measured | None:
-    """Return the fastest run of the contestants ``names`` whose error is at most ``error``.
-
-    None if there is no run.
-    """
+    """Return the fastest run of the contestants ``names`` whose error is at most ``error``; None if there is none."""
     good = [run for run in runs if run.name in names and run.error <= error]
     return min(good, key=lambda run: run.least, default=None)
 
@@ -238,7 +235,10 @@ def best_of(runs: Iterable[Measured], error: float, names: Sequence[str]) -> Mea
 
 
 def _print_table(name: str, runs: list[Measured]) -> dict[str, list[float]]:
-    """Print the table of one motion; return, for each other stepper, its times divided by symrot's, one per decade."""
+    """Print the table of one motion; return a map from each other stepper to its times divided by symrot's.
+
+    There is a ratio for each bound of the error in the table (1e-3, 1e-4, ..) that both steppers reach.
+    """
     stop = MOTIONS[name]["span"]["t"][1]
     present = list(dict.fromkeys(run.name for run in runs))
     peers = [n for n in present if n.startswith("heyoka")]
@@ -256,7 +256,6 @@ def _print_table(name: str, runs: list[Measured]) -> dict[str, list[float]]:
     ]
     columns = [column for column in columns if set(column[1]) & set(present)]
     print(f"{'  error <=':10}{'taylor ms':>12}" + "".join(f"{title:>14} ms{'ratio':>8}" for title, *_ in columns))
-    # one ratio per decade
     ratios: dict[str, list[float]] = {title: [] for title, *_ in columns}
     for decade in DECADES:
         fastest = best_of(runs, decade, ["taylor"])
@@ -280,7 +279,10 @@ def _print_ratios(indent: str, ratios: dict[str, list[float]]) -> None:
 
 
 def _print_orders(name: str, rounds: int) -> None:
-    """Print, for a motion, the least time of each order of the series at each power of ten of the error."""
+    """Print a table of times for a motion: a row for each bound of the error, a column for each order of the series.
+
+    A time is that of the fastest run whose error is at most the bound (1e-3, 1e-4, ..).
+    """
     problem, exact = SteppedProblem(name, 1.0), reference(name)
     paths = {f"{order}": problem.taylor_library(order) for order in ORDERS}
     tasks: list[Task] = [

@@ -14,9 +14,10 @@ __all__ = ["rounded_value", "with_rounding"]
 
 
 def with_rounding(claim: Claim, verdict: Verdict) -> Verdict:
-    """Return the verdict "true" for a claim such as ``2/3 == 0.667``, with a correctly rounded decimal number.
+    """Return the verdict "true" for a claim such as ``2/3 == 0.667``, whose decimal number is correctly rounded.
 
-    A wrong digit gets a repair; other verdicts are unchanged.
+    For a wrong digit, return ``verdict`` with the diagnosis "digits" and the corrected claim as its repair, or the
+    verdict "false" if the right digits cannot be written. Return ``verdict`` for any other claim.
     """
     if verdict.verdict not in ("false", "undecided") or claim.relation is None or claim.hypotheses or claim.define:
         return verdict

@@ -18,7 +18,10 @@ __all__ = ["for_complex_numbers", "for_special_directions"]
 UNIT = "i"
 NO_FAULT = Diagnosis("none", "")
 FACTOR, OTHER = "factor_", "other_"
-"""Names that no claim has: of a positive factor, and of a vector."""
+"""Names that no claim has, of the positive number k in b = k a and of the vector c in b = a x c.
+
+With these equations a claim about vectors a and b is tested for parallel and for perpendicular vectors.
+"""
 
 
 def for_complex_numbers(claim: Claim, verdict: Verdict) -> Verdict:

@@ -35,7 +35,7 @@ OUTCOMES = {
 """Outcome of a claim -> its description, from good to bad."""
 
 ANGLES = ("sin", "cos", "tan", "cot", "sec", "csc")
-"""Functions of angles."""
+"""Names of the trigonometric functions, whose argument is an angle."""
 
 
 @dataclass(frozen=True)

@@ -183,4 +183,4 @@ COMMANDS: dict[str, Command] = {
     "bound": ("bound the rounding errors of a kernel for inputs in given ranges", _bound, _bound_arguments),
     "selftest": ("check that this machine computes as the certificates assume", _selftest, _selftest_arguments),
 }
-"""As in :data:`symrot.cli.main.COMMANDS`."""
+"""Names of the commands -> (help text, function that runs the command, function that declares its arguments)."""

@@ -133,4 +133,4 @@ COMMANDS: dict[str, Command] = {
     "check": ("decide whether formulas hold, and suggest corrections", _check, _check_arguments),
     "identify": ("recognise a formula, whatever the names of its symbols", _identify, _identify_arguments),
 }
-"""As in :data:`symrot.cli.main.COMMANDS`."""
+"""Names of the commands -> (help text, function that runs the command, function that declares its arguments)."""

@@ -17,7 +17,7 @@ PAGES: dict[str, Callable[[Any], str]] = {
     "html": lambda page: page.html(),
 }
 PAGE_FILES = {".html": "html", ".htm": "html", ".tex": "latex", ".md": "markdown", ".pdf": "latex"}
-"""End of a file's name -> the format that somebody wants who gives this file instead of a folder."""
+"""Suffix of a file -> format of pages; the error message for ``-o FILE`` suggests this format with a folder instead."""
 
 
 def _derive(options: Namespace) -> int:
@@ -103,4 +103,4 @@ def _derive_arguments(parser: ArgumentParser) -> None:
 COMMANDS: dict[str, Command] = {
     "derive": ("print derivations, proven step by step", _derive, _derive_arguments),
 }
-"""As in :data:`symrot.cli.main.COMMANDS`."""
+"""Name of the command -> (help text, function that runs it, function that declares its arguments)."""

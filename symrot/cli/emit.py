@@ -80,4 +80,4 @@ def _emit_arguments(parser: ArgumentParser) -> None:
 COMMANDS: dict[str, Command] = {
     "emit": ("print a kernel of the library or of a scene as C, NumPy, JavaScript or JAX", _emit, _emit_arguments),
 }
-"""As in :data:`symrot.cli.main.COMMANDS`."""
+"""Name of the command -> (help text, function that runs it, function that declares its arguments)."""

@@ -83,4 +83,4 @@ def _inertia_arguments(parser: ArgumentParser) -> None:
 COMMANDS: dict[str, Command] = {
     "inertia": ("print the inertia of a mesh or of a robot's link", _inertia, _inertia_arguments),
 }
-"""As in :data:`symrot.cli.main.COMMANDS`."""
+"""Name of the command -> (help text, function that runs it, function that declares its arguments)."""

@@ -15,7 +15,7 @@ FORMS = ("markdown", "latex", "html", "moodle", "json")
 FORM_OF = {".tex": "latex", ".html": "html", ".htm": "html", ".xml": "moodle", ".json": "json"}
 """End of a file's name -> the format that it has without ``--format``; all other files are Markdown."""
 EMBEDDED = re.compile(r"!\[([^\]]*)\]\(data:[^)]*\)")
-"""A drawing in Markdown: thousands of letters that nobody can read in a terminal."""
+"""Regular expression of a drawing that Markdown contains as text; in a terminal its title replaces it."""
 
 
 def _exercise(options: Namespace) -> int:
@@ -116,4 +116,4 @@ COMMANDS: dict[str, Command] = {
     "exercise": ("print exercises with numbers, hints and proven solutions", _exercise, _exercise_arguments),
     "grade": ("grade answers to exercises: numbers with units, and formulas", _grade, _grade_arguments),
 }
-"""As in :data:`symrot.cli.main.COMMANDS`."""
+"""Names of the commands -> (help text, function that runs the command, function that declares its arguments)."""

@@ -52,4 +52,4 @@ COMMANDS: dict[str, Command] = {
     "bench": ("measure time against error on a scene of your choice", _bench, _bench_arguments),
     "doctor": ("check compiler, cache and installed versions", _doctor, _doctor_arguments),
 }
-"""As in :data:`symrot.cli.main.COMMANDS`."""
+"""Names of the commands -> (help text, function that runs the command, function that declares its arguments)."""

@@ -30,7 +30,7 @@ COMMANDS: dict[str, Command] = (
     | certify.COMMANDS
     | machine.COMMANDS
 )
-"""For each command: its help text, the function that runs it, and the function that declares its arguments."""
+"""Name of each command -> (help text, function that runs it, function that declares its arguments)."""
 
 
 def _nowhere() -> TextIO:

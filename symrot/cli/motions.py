@@ -185,4 +185,4 @@ COMMANDS: dict[str, Command] = {
     "explain": ("show what is computed for a scene, what is skipped and why", _explain, _explain_arguments),
     "scenes": ("list the scenes that come with symrot", _scenes, json_option),
 }
-"""As in :data:`symrot.cli.main.COMMANDS`."""
+"""Names of the commands -> (help text, function that runs the command, function that declares its arguments)."""

@@ -198,4 +198,4 @@ def _arguments(parser: ArgumentParser) -> None:
 COMMANDS: dict[str, Command] = {
     "sweep": ("propagate many motions of a scene with varied values", _sweep, _arguments),
 }
-"""The command with its help text, the function that runs it, and the function that declares its arguments."""
+"""Name of the command -> (help text, function that runs it, function that declares its arguments)."""

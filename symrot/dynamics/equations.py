@@ -160,9 +160,10 @@ def inverse(tensor: Matrix) -> Matrix:
 
 
 def _motion(structure: Structure) -> tuple[Motion, tuple[Symbol, ...], list[Expr]]:
-    """Return the symbols of a motion with this structure, its attitude states, and expressions that are always zero.
+    """Return (motion, attitude states, relations) for a structure, which says which constants are zero or equal.
 
-    The expression for a quaternion is ``|q|^2 - 1``.
+    The motion has the symbols of angular velocity, attitude and inertia. The relations are expressions that are always
+    zero: ``|q|^2 - 1`` if there is a quaternion q of symbols.
     """
     inertia, axis = inertia_matrix(structure.inertia), structure.planar
     turning = [
@@ -192,9 +193,9 @@ def _motion(structure: Structure) -> tuple[Motion, tuple[Symbol, ...], list[Expr
 
 
 def equations_of_motion(structure: Structure) -> Equations:
-    """Return the equations of motion of all scenes that have a given structure.
+    """Return the equations of motion of all scenes that have the same structure.
 
-    The structure says which constants are zero, equal or free.
+    A structure says which constants are zero, equal or free, and which torques act.
     """
     motion, attitude, relations = _motion(structure)
     laws = tuple(torque_law(torque, motion) for torque in structure.torques)

@@ -50,10 +50,10 @@ def rate_along(expression: Expr, equations: Equations) -> Expr:
 
 
 def _candidates(equations: Equations, structure: Structure) -> Iterable[tuple[str, str, Expr, Expr]]:
-    """Yield candidates for conserved quantities, as (name, unit, value, formula to test), such as energy and angular
-    momentum.
+    """Yield candidates for conserved quantities, such as energy and angular momentum, as (name, unit, value, tested).
+
+    The formula ``tested`` is constant exactly if the value is, and shorter to decide about: the square of a norm.
     """
-    # The formula to test is constant exactly if the value is, but simpler.
     momentum, energy = equations.momentum_b, equations.kinetic_energy + equations.potential
     yield "energy", "J", energy, energy
     if equations.motion.quaternion is None:
@@ -74,8 +74,10 @@ def _candidates(equations: Equations, structure: Structure) -> Iterable[tuple[st
 
 
 def _of_torque(torque: TorqueStructure, momentum_s: Matrix, energy: Expr) -> Iterable[tuple[str, str, Expr, Expr]]:
-    """Yield candidates that a torque suggests, as (name, unit, value, formula to test); most torques suggest
-    nothing.
+    """Yield the conserved quantities that a motion may have because of a torque, as (name, unit, value, tested).
+
+    The items are those of :func:`_candidates`. Gravity gives the vertical angular momentum, and the gravity gradient
+    the Jacobi integral; other torques give nothing.
     """
     if not isinstance(torque, FieldTorque):
         return

@@ -176,7 +176,10 @@ def _rational(value: Fraction) -> Rational:
 
 
 def _with_brackets(node: Node, known: dict[str, Expr]) -> Node:
-    """Return a formula with names for products such as ``2*(1 + tanh(u))``; the map ``known`` gets their values."""
+    """Return a formula in which new names replace products such as ``2*(1 + tanh(u))``, so that they stay factored.
+
+    The product that a name stands for, with its bracket not expanded, is added to the map ``known``.
+    """
     parts = [_with_brackets(child, known) for child in children(node)]
     factors = [part for part in parts if part[0] == "number"]
     if len(factors) == 1 and (node[0] == "*" or (node[0] == "/" and parts[1] is factors[0])):

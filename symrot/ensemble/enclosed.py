@@ -34,7 +34,10 @@ class Enclosed:
         return self.high + 0.0, np.isfinite(self.high) & (below == self.high) & (above == self.high)
 
     def _lost(self, other: "Enclosed") -> Floats:
-        """Return a bound of the relative error of a sum or product of two arrays: 0 where both numbers are doubles."""
+        """Return a bound of the relative error that the addition or multiplication of two arrays itself adds.
+
+        It is 0 where both numbers are single doubles, because a sum of two doubles then holds the result exactly.
+        """
         return np.where((self.low == 0) & (other.low == 0), 0.0, ERROR)
 
     def __neg__(self) -> "Enclosed":
@@ -71,8 +74,10 @@ class Enclosed:
 
 
 def _made(high: Floats, low: Floats, error: Floats, size: Floats) -> Enclosed:
-    """Return the numbers ``high + low``, with an infinite error where ``size`` is not between LEAST and MOST."""
-    # size: of the largest operand or result; outside these limits, error terms are not exact
+    """Return the numbers ``high + low``, with an infinite error where ``size`` is not 0 or between LEAST and MOST.
+
+    ``size`` is the size of the operands or of the result; outside these limits, the bounds of the errors do not hold.
+    """
     safe = (size == 0) | (size > LEAST) & (size < MOST)
     return Enclosed(high, low, np.where(safe, error, np.inf))
 

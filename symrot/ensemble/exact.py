@@ -94,10 +94,16 @@ def _patterns(variation: Variation) -> list[tuple[Hashable, Rows]]:
 #   are nearly equal, because its principal axes are computed in fractions. It takes 40 to 80 us for rotation about one
 #   axis or spin-up, if constants are too large or too small for a batch.
 ARRAYS_LOSE_BELOW = {"symmetric body driven about its axis, angular velocity alone": 1e4}
-"""Angle of rotation, rad, below which steps are faster than this closed form, if no constant varies; see ``choose``."""
+"""Name of a closed form -> angle of rotation of a trajectory, rad, below which integration in steps is faster.
+
+It counts if only initial states vary in the ensemble; see :func:`choose`.
+"""
 
 ALONE_LOSES_BELOW = {"free_body": 1e4, "axial": 1e3, "spin_up": 1e3}
-"""For each library of closed forms, the angle, rad, below which steps are faster than motions computed one by one."""
+"""Library of a closed form -> angle of rotation of a trajectory, rad, below which integration in steps is faster.
+
+It counts where the closed form is computed for one trajectory after the other, not for arrays of them.
+"""
 
 
 class Solved(NamedTuple):
@@ -111,9 +117,9 @@ class Solved(NamedTuple):
 
 
 def choose(variation: Variation, times: Floats, start: float, faster: bool) -> list[Solved]:
-    """Return the trajectories of an ensemble to compute in closed form, grouped by their form; the others need steps.
+    """Return the trajectories of an ensemble to compute in closed form, in groups with equal form.
 
-    If ``faster``, trajectories for which steps are faster than the closed form are left out.
+    All other trajectories are integrated in steps; if ``faster``, also those for which steps are the faster way.
     """
     solved: list[Solved] = []
     for kind, rows in forms_of(variation):

@@ -54,7 +54,7 @@ class Numbers:
         return Plan(self._variation.scene_of(self._chosen[k]), self._plan.structure, ()).constants
 
     def values_of(self, parameters: Parameters, epoch: float = 0.0) -> Floats:
-        """Return the values of k kernel parameters for each trajectory, shape (n, k), each rounded only once.
+        """Return the values of k kernel parameters for each trajectory, shape (n, k): exact values, each rounded once.
 
         ``epoch`` is the scene's time, s, at which the time t of the kernel is 0.
         """
@@ -116,7 +116,10 @@ class Numbers:
         return {name: value for name, value in known.items() if name not in self._columns}
 
     def _each(self, node: Node, used: set[str]) -> Floats:
-        """Return the values of the formula ``node``, which contains the names ``used``, rounded once."""
+        """Return the values of the formula ``node`` for each trajectory, shape (n,): exact values, each rounded once.
+
+        ``used`` are the names in the formula.
+        """
         columns = {name: column for name, column in self._columns.items() if name in used}
         try:
             with np.errstate(all="ignore"):
@@ -132,7 +135,11 @@ class Numbers:
 
 
 def _in_fractions(function: Callable[[dict[str, Fraction]], Fraction], columns: Mapping[str, Floats]) -> Floats:
-    """Return the values of ``function``, each rounded, for the constants in each row of ``columns``, as fractions."""
+    """Return the value of ``function`` for each of n trajectories, rounded to a double, shape (n,).
+
+    ``columns`` has an array, shape (n,), for each constant, by name. The function takes the constants of one trajectory
+    as fractions, by name, and returns a fraction.
+    """
     table = np.stack(list(columns.values()), axis=1)
     # evaluated once for trajectories with equal constants
     rows, places = np.unique(table, axis=0, return_inverse=True)

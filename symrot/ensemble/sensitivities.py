@@ -155,7 +155,11 @@ def read_columns(scene: Scene, keys: Sequence[str], varying: Collection[str]) ->
 
 
 def _require_own(column: Column, varying: Collection[str]) -> None:
-    """Raise InputError if a variable changes another number that differs between the motions: gravity and weight."""
+    """Raise InputError if the variable of ``column`` sets, beside itself, a number that differs between the motions.
+
+    An example is the variable gravity, which sets the weight, if the motions have different weights. ``varying`` has
+    the names of the constants that differ.
+    """
     variable = column.variable
     if variable.key == ATTITUDE or variable.key.startswith("omega"):
         return
@@ -164,7 +168,6 @@ def _require_own(column: Column, varying: Collection[str]) -> None:
         moved.clear()
     moved |= {"omega"} if any(column.start[:RATES]) else set()
     moved |= {"quaternion"} if any(column.start[RATES:]) else set()
-    # such as the variable gravity, if the motions have different weights
     own = sorted(moved.intersection(varying))
     if own:
         raise InputError(
@@ -231,8 +234,11 @@ class _Equations:
         return library.build(lanes.wrap_translation_unit(text), "lanes", lanes.FLAGS)
 
     def follow(self, rows: lanes.Integers) -> tuple[Floats, Floats, list[str]]:
-        """Return states, shape (n, m, 7), their derivatives, (n, m, 7, k), and n texts: why a motion stopped early."""
-        # the text is empty for a motion that reached all times
+        """Return the states of n motions at m times, shape (n, m, 7), their derivatives, (n, m, 7, k), and n texts.
+
+        The derivatives are those by the k variables. A text says why a motion stopped early; it is empty for a motion
+        that reached all times. ``rows`` are the indices of the motions.
+        """
         problem, count, columns = self.problem, len(rows), len(self.columns)
         times = problem.times if problem.times.ndim == 1 else problem.times[rows]
         start, units = self._start(rows), self._units(rows)

@@ -235,7 +235,10 @@ class Variation:
 
 
 def _equal(one: Fraction | Floats, other: Fraction | Floats) -> Any:
-    """Return whether two constants are equal: one bool, or an array with one entry per trajectory if one varies."""
+    """Return whether two constants are equal: a bool for two fractions, else an array with a bool for each trajectory.
+
+    A constant is a fraction if it is the same for all trajectories, else an array of its values.
+    """
     if isinstance(one, Fraction) and isinstance(other, Fraction):
         return number.equal(one, other)  # up to 2^-200 of their size
     left, right = (float(value) if isinstance(value, Fraction) else value for value in (one, other))

@@ -1,8 +1,9 @@
 """Congruence closure: among inverse functions or logarithms that are proven equal, one replaces the others.
 
 ``asin(x)`` and ``atan2(x, sqrt(1 - x^2))`` are equal, but the polynomial ring has an independent variable for each. A
-proof is stored as its polynomial rings: it holds where none of their divisors is zero. ``hypotheses`` are expressions
-that are zero, ``domain`` formulas that are nonnegative.
+proof is returned as the polynomial rings that it computes in: it holds where no expression is zero by which the
+formulas in these rings divide. The arguments ``hypotheses`` are expressions that are zero, ``domain`` formulas that are
+nonnegative.
 """
 
 from collections.abc import Iterator, Sequence
@@ -26,9 +27,9 @@ MOST_SYMBOLS = 6
 def proof_by_congruence(
     left: Expr, right: Expr, hypotheses: Sequence[Expr], domain: Sequence[Expr]
 ) -> tuple[FormulaRing, ...] | None:
-    """Prove ``left = right`` by replacing inverse functions with equal ones; return the rings.
+    """Prove ``left = right`` by replacing inverse functions and logarithms with equal ones.
 
-    None: there is no proof.
+    Return the polynomial rings that the proof uses, or None if no proof is found.
     """
     rings: list[FormulaRing] = []
     while True:
@@ -51,7 +52,7 @@ def proof_by_congruence(
 def _equal_pairs(
     names: Sequence[Expr], hypotheses: Sequence[Expr], domain: Sequence[Expr]
 ) -> Iterator[tuple[Expr, Expr, tuple[FormulaRing, ...]]]:
-    """Yield (f, h, rings) with ``f = h`` proven in ``rings``; h is g or ``pi/2 - g``, with f and g in ``names``."""
+    """Yield (f, h, rings): ``f = h`` is proven in ``rings``, and h is g or ``pi/2 - g``, for f and g in ``names``."""
     for first, second in combinations(names, 2):
         for other in (first, pi / 2 - first):
             if not hypotheses and not seems_zero(second - other, domain):

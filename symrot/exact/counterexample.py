@@ -34,7 +34,9 @@ ATTEMPTS = 60
 """Number of random points; a nonzero polynomial of degree d is zero at one of them with a probability of about d/40."""
 
 SIMPLER_TERMS = 200_000
-"""Largest number of terms of the residual that are evaluated to simplify a point."""
+"""Largest number of terms that are evaluated to replace the numbers of a counterexample by shorter ones, one at a time.
+
+Each trial evaluates left - right once, with all its terms."""
 
 UNMOVED = 20
 """Number of random points that are tried unchanged; later points are first moved into the domain if necessary."""
@@ -58,7 +60,7 @@ _TURNS = [Rational(n, d) * pi for n, d in ((1, 1), (-1, 1), (2, 1), (1, 2), (-1,
 
 @dataclass(frozen=True)
 class FreeChoice:
-    """Variables of the ring with values chosen together: a symbol, an angle's sine and cosine, or a unit vector."""
+    """Variables of a ring whose values are chosen together: a symbol, an angle's sine and cosine, or a unit vector."""
 
     generators: tuple[int, ...]  # indices of the variables
     simple: tuple[tuple[Fraction, ...], ...]  # a few choices with short numbers
@@ -70,7 +72,7 @@ def rational_witness(
 ) -> Counterexample | None:
     """Return a counterexample to ``left = right`` in rational numbers, or None if the search ends without one.
 
-    ``entry`` is stored in it: the row and column of the two sides in a matrix, or None.
+    ``entry`` is stored in the counterexample: the row and column of the two sides in a matrix, or None.
     """
     # roots, inverse functions and exponentials are seldom rational: no search
     if ring.outside_scope or ring.roots or ring.fine or ring.exponentials:
@@ -148,9 +150,10 @@ def _difference(ring: FormulaRing, left: Expr, right: Expr) -> tuple[Callable[[d
 def closed_form_witness(
     ring: FormulaRing, left: Expr, right: Expr, entry: tuple[int, int] | None
 ) -> Counterexample | None:
-    """Return a point at which 50-digit intervals prove ``left != right``, or None.
+    """Return a counterexample to ``left = right``: a point at which 50-digit intervals prove the inequality, or None.
 
-    Its symbols are rational or multiples of pi. ``entry`` is stored in it, as by :func:`rational_witness`.
+    Its symbols are rational or multiples of pi. ``entry`` is stored in the counterexample, as by
+    :func:`rational_witness`.
     """
     places = {number: leaf for leaf, number in ring.symbols.items() if ring.leaves[leaf]}
     bound = occurring(ring.hypothesis_numerators)
@@ -203,9 +206,10 @@ def closed_form_witness(
 def _move_within(
     formulas: Sequence[Expr], values: dict[Expr, Expr], movable: Sequence[Expr], simple: Sequence[Expr]
 ) -> None:
-    """Give one of the symbols ``movable`` another value for each formula that is negative at the point ``values``.
+    """Change ``values``, a point: for each formula that is negative there, one symbol gets another value.
 
-    The formula becomes nonnegative, or the value stays. ``simple`` are the values tried.
+    The values ``simple`` of the symbols ``movable`` are tried until the formula is nonnegative; if none helps, the
+    point stays.
     """
     for formula in formulas:
         if _seems_nonnegative(formula, values) and _nonnegative(formula, values):
@@ -277,7 +281,11 @@ def _shortest(number: Expr) -> Expr:
 
 
 def _coordinates(ring: FormulaRing) -> tuple[list[FreeChoice], list[tuple[int, PolyElement]]]:
-    """Return (free, solved): the free choices of a point, and pairs (variable, hypothesis that determines it)."""
+    """Return (free, solved): how the values of the ring's variables at a point are chosen.
+
+    ``free`` are groups of variables with free values, such as the sine and cosine of an angle; ``solved`` are pairs
+    (index of a variable, hypothesis that is solved for this variable).
+    """
     fixed: set[int] = set()
     coordinates: list[FreeChoice] = []
     solved: list[tuple[int, PolyElement]] = []

@@ -120,7 +120,7 @@ def decide(left: Any, right: Any, relations: Sequence[Any] = ()) -> Decision:
 
 @dataclass
 class _FormulaCase(Case):
-    """An equation between formulas under decision, with what the stages have proven about it."""
+    """An equation between formulas under decision, with the evidence that the functions :data:`STAGES` collect."""
 
     normal_forms: dict[int, Expr] = field(default_factory=dict)  # index of an entry -> normal form of left - right
 
@@ -135,7 +135,10 @@ class _FormulaCase(Case):
         return tuple(sorted(unique, key=written))
 
     def confirmed(self) -> Decision:
-        """Return "true", or "undecided" if no point is known where both sides are defined."""
+        """Return the decision "true", or "undecided" if no point is known where both sides are defined.
+
+        Raise InputError if a side is proven to be nowhere a real number.
+        """
         # formulas with ``i`` are complex, and defined wherever no divisor is zero
         needs = [need for need in needs_of(self.sides) if not need.formula.has(I)]
         if not any(side.has(I) for side in self.sides):
@@ -180,6 +183,7 @@ def leave_open(case: _FormulaCase) -> Decision:
 # With roots, inverse functions or other hypotheses, a zero normal form still proves the identity wherever all formulas
 # are real, but a nonzero normal form proves nothing.
 STAGES = (subtract, normalise, prove, witness, refute, arguments, congruence, leave_open)
+"""Functions that try in this order to decide an equation; the last one always returns a decision."""
 
 
 def _shaped(entries: list[Expr], shape: Shape) -> Any:

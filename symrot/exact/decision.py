@@ -27,7 +27,7 @@ __all__ = [
 ]  # fmt: skip
 
 MOST_SEARCHED = 4
-"""Largest number of unproven matrix entries in which a counterexample is sought."""
+"""Largest number of unproven matrix entries in which a counterexample is sought by default."""
 
 Shape = tuple[int, int] | None
 """(rows, columns) of a matrix; None for a scalar."""
@@ -118,8 +118,11 @@ class Case(ABC):
 
     @abstractmethod
     def confirmed(self) -> Decision:
-        """Return "true" if a point is known where both sides are defined, else "undecided"."""
-        # called once all entries are proven equal: without such a point the equation may be true of nothing
+        """Return the decision "true" if a point is known where both sides are defined, else "undecided".
+
+        The method is called once all entries are proven equal.
+        """
+        # without such a point the equation may be true of nothing
 
     def rely_on(self, rings: tuple[FormulaRing, ...]) -> None:
         """Add the polynomial rings that a proof uses to the evidence of the case."""
@@ -132,9 +135,9 @@ class Case(ABC):
         return (*self.lefts, *self.rights)
 
     def search(self, *searches: Search, places: Sequence[int] | None = None) -> Counterexample | None:
-        """Return the first counterexample by one of ``searches`` for the entries with the indices ``places``, or None.
+        """Return the first counterexample that one of ``searches`` yields for the entries with the indices ``places``.
 
-        Without ``places`` the unproven entries are searched.
+        Without ``places`` the first MOST_SEARCHED unproven entries are searched. The result is None if there is none.
         """
         for search in searches:
             for place in self.unproven[:MOST_SEARCHED] if places is None else places:
@@ -194,7 +197,7 @@ def refute(case: Case) -> Decision | None:
 
 
 def arguments(case: Case) -> Decision | None:
-    """Return a decision if all entries become equal once the arguments of functions are in normal form, else None."""
+    """Return a decision if both sides are proven equal once arguments of functions are in normal form, else None."""
     ring = case.ring
     try:
         # entries that earlier stages have proven equal are not tried again
@@ -207,7 +210,7 @@ def arguments(case: Case) -> Decision | None:
 
 
 def congruence(case: Case) -> Decision | None:
-    """Return a decision if all entries become equal by replacing inverse functions, else None.
+    """Return a decision if both sides are proven equal once equal inverse functions are replaced by one, else None.
 
     For example, acos(x) is replaced by pi/2 - asin(x).
     """

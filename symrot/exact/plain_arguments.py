@@ -1,7 +1,8 @@
 """Simplified arguments of functions: ``sin(sin(x)^2 + cos(x)^2) = sin(1)``.
 
 A polynomial ring has a variable for each call of an unknown function as it is written, also if two calls are equal. So
-arguments are replaced by normal forms first; the results are equal where no divisor of the returned rings is zero.
+arguments are replaced by normal forms first. Old and new formula are equal where no divisor in the polynomial rings is
+zero in which the normal forms are computed. The functions of this module return these rings; their arguments
 ``hypotheses`` are expressions that are zero, ``domain`` formulas that are nonnegative.
 """
 
@@ -23,7 +24,7 @@ MOST_LEVELS = 4
 """Largest number of levels of nested functions, from the inside out, whose arguments are put in normal form."""
 
 MOST_COMPARED = 8
-"""Largest number of arguments that are compared with each other."""
+"""Largest number of arguments of functions, such as u in sin(u), that are tested in pairs whether they are equal."""
 
 
 def with_plain_arguments(
@@ -70,7 +71,7 @@ def proof_by_arguments(
 ) -> tuple[FormulaRing, ...] | None:
     """Prove ``left = right`` with all arguments of functions in normal form.
 
-    Return the polynomial rings that the proof uses, or None without a proof.
+    Return the polynomial rings that the proof uses, or None if no proof is found.
     """
     (shorter, other), rings = with_plain_arguments([left, right], hypotheses, domain)
     # no argument changes: the proof was tried before

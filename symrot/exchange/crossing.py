@@ -24,7 +24,7 @@ MOST_PAIRS = 5_000_000
 """Largest number of pairs of triangles, overlapping along one axis, that are searched for crossings."""
 
 MOST_SEARCHED = 200_000
-"""Largest number of triangles for which a search of pairs is tried."""
+"""Largest number of triangles of a mesh in which all pairs of crossing triangles are searched."""
 
 MOST_ANGLES = 5_000_000
 """Largest number of solid angles that are computed; it limits the number of contacts that are tested."""
@@ -85,13 +85,15 @@ def require_boundary(surface: Surface, where: str) -> str:
 
 
 def _chosen(corners: Floats, numbers: NDArray[np.int64], count: int) -> NDArray[np.int64]:
-    """Return the indices of the triangles through which the lines of the test are drawn."""
+    """Return the indices of the triangles through which straight lines are drawn, to test winding numbers along them.
+
+    ``numbers`` are the numbers of the triangles' shells (connected parts), 0 to ``count`` - 1.
+    """
     edges = corners[1] - corners[0], corners[2] - corners[0]
     areas = sum((edges[0][i] * edges[1][j] - edges[0][j] * edges[1][i]) ** 2 for i, j, _ in AXES)
     order = np.lexsort((areas, numbers)) if count > 1 else np.array([int(areas.argmax())])
     last = np.flatnonzero(np.diff(numbers[order], append=count)) if count > 1 else np.array([0])
-    # the largest triangle of each shell (connected part), and every j-th triangle, so that the test takes a few seconds
-    # at most
+    # the largest triangle of each shell, and every j-th triangle, so that the test takes a few seconds at most
     largest = order[last]
     total = len(areas)
     others = np.linspace(0, total - 1, max(1, min(total, MOST_TESTS // total))).astype(np.int64)

@@ -15,12 +15,13 @@ from symrot.inertia.tensor import Tensor, Vector
 __all__ = ["Inertial"]
 
 LONGEST_NUMBER = 24
-"""Most characters of a fraction, such as ``1/3``, that :meth:`Inertial.table` leaves exact."""
+"""Largest number of characters of a fraction, such as ``1/3``, that :meth:`Inertial.table` leaves exact."""
 
 DIGITS, MORE_DIGITS = 34, 70
-"""Digits to which it rounds other numbers, and digits for a body with equal moments or a flat body.
+"""Digits to which :meth:`Inertial.table` rounds numbers with a longer fraction; MORE_DIGITS for special bodies.
 
-Equal moments, and the sum of the moments of a flat body, must remain equal to 2^-200, which is 61 digits.
+Special are bodies with equal moments and flat bodies, for which a sum of two moments is the third: a scene treats
+numbers as equal if they agree to 2^-200, that is, in 61 digits.
 """
 
 

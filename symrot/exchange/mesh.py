@@ -32,7 +32,10 @@ LARGEST_ERROR = Fraction(1, 10**12)
 """Largest relative error of results in doubles; if the bound is larger, the integrals are computed exactly."""
 
 LARGEST_SHARE = Fraction(1, 10**6)
-"""Largest error of the tensor, relative to the smallest second moment, so that thin bodies stay possible bodies."""
+"""Largest rounding error of second moments in doubles, relative to the smallest principal second moment.
+
+A thin body has a small one. A larger error could make it negative, so the integrals are then computed exactly.
+"""
 
 Rows = tuple[tuple[Any, ...], ...]
 

@@ -23,14 +23,17 @@ EARLY_END = "expected a mesh in the format {}, got a file of another format or o
 
 
 class Facts(NamedTuple):
-    """What a mesh file says about its mesh before trimesh reads it."""
+    """Facts about a mesh, read from its file before trimesh reads it, for comparison with the mesh from trimesh."""
 
     triangles: int | None = None  # after the division of polygons; None: trimesh itself refuses a file that ends early
     bent: int = 0  # polygons that are not flat
 
 
 def _stl(content: bytes) -> Facts:
-    """Return the number of triangles that an STL file has."""
+    """Return the facts about an STL file, given its ``content``: its number of triangles.
+
+    InputError is raised for a text that does not end with ``endsolid``.
+    """
     count = int.from_bytes(content[80:84], "little")
     if len(content) == 84 + 50 * count:
         return Facts(count)
@@ -42,7 +45,10 @@ def _stl(content: bytes) -> Facts:
 
 
 def _obj(content: bytes) -> Facts:
-    """Return the number of triangles into which the polygons of an OBJ file are divided, and how many are not flat."""
+    """Return the facts about an OBJ file: into how many triangles its polygons are divided, and how many are not flat.
+
+    InputError is raised for lines that trimesh would ignore or misread.
+    """
     count, form, coordinates, polygons = 0, 0, array("d"), list[list[str]]()
     for number, line in enumerate(content.decode("latin-1").replace("\\\n", " ").splitlines(), 1):
         key, *words = line.partition("#")[0].split() or [""]
@@ -64,9 +70,10 @@ def _obj(content: bytes) -> Facts:
 
 
 def _ply(content: bytes) -> Facts:
-    """Raise InputError for a PLY file as text with corners that are no whole numbers, or with surplus lines.
+    """Return no facts (an empty :class:`Facts`) about a PLY file, after a test of a file in text form.
 
-    Trimesh would round such corners, and leave out such lines.
+    InputError is raised for corners that are no whole numbers, which trimesh would round, and for surplus lines, which
+    trimesh would ignore.
     """
     header, _, numbers = content.partition(b"end_header")
     if b"format ascii" not in header:
@@ -83,7 +90,10 @@ def _ply(content: bytes) -> Facts:
 
 
 def _glb(content: bytes) -> Facts:
-    """Raise InputError for a GLB file whose shape depends on what trimesh does not read."""
+    """Return no facts (an empty :class:`Facts`) about a GLB file, after a test.
+
+    InputError is raised if trimesh would lose a part of the shape, such as morph targets, skins or required extensions.
+    """
     document = json.loads(content[20 : 20 + int.from_bytes(content[12:16], "little")])
     nodes, meshes, scenes = (document.get(key, []) for key in ("nodes", "meshes", "scenes"))
     primitives = [primitive for mesh in meshes for primitive in mesh["primitives"]]
@@ -110,7 +120,7 @@ def _faults_of_node(node: Mapping[str, Any]) -> list[str]:
 
 
 FACTS_OF: Mapping[str, Callable[[bytes], Facts]] = {".stl": _stl, ".obj": _obj, ".ply": _ply, ".glb": _glb}
-"""Suffix -> function that returns the facts about the content of a file.
+"""Suffix of a file -> function that takes the content of such a file and returns its :class:`Facts`.
 
-It raises InputError for parts of the file that trimesh would lose.
+The function raises InputError for parts of the file that trimesh would lose.
 """

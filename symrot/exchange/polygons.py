@@ -1,4 +1,4 @@
-"""Polygons with more than three corners in mesh files, which are divided into triangles: how many are not flat."""
+"""A count of the polygons in a mesh file that are not flat, so that their division into triangles is ambiguous."""
 
 from collections.abc import Sequence
 
@@ -8,7 +8,9 @@ from numpy.typing import NDArray
 __all__ = ["bent_polygons"]
 
 FLAT = 1e-6
-"""Largest distance of a corner from the plane of a flat polygon, relative to the size of the mesh: a rounding error."""
+"""A polygon counts as flat if no corner is farther from its plane than this, relative to the size of the mesh.
+
+Smaller distances can be rounding errors of the coordinates."""
 
 
 def bent_polygons(vertices: NDArray[np.float64], polygons: Sequence[Sequence[int]]) -> int:

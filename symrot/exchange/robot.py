@@ -244,7 +244,8 @@ def _inertial(element: Element, reason: str) -> Element:
 def _require_known(element: Element, attributes: Collection[str], children: Collection[str]) -> None:
     """Raise InputError if ``element`` has an attribute, or a child element, that its format does not define.
 
-    Passed over, it would be lost: a rotation under a name of another version, or a mass as an attribute.
+    A part with an unknown name would be ignored: a rotation whose name another version of the format defines, or a mass
+    as an attribute.
     """
     for kind, names, known in (
         ("attributes", element.keys(), attributes), ("elements", [child.tag for child in element], children)
@@ -350,8 +351,9 @@ _CHANGING = {
     "inertiafromgeom": ("auto", "false"), "balanceinertia": ("false",), "fusestatic": ("false",),
     "coordinate": ("local",), "boundmass": ("0",), "boundinertia": ("0",), "settotalmass": ("-1",),
 }  # fmt: skip
-"""Attributes of <compiler> with which MuJoCo changes inertials -> values with which it does not; numbers have an effect
-if they are positive.
+"""Attribute of <compiler> with which MuJoCo may change inertials -> values with which MuJoCo does not.
+
+A number has an effect if it is positive.
 """
 
 

@@ -22,13 +22,13 @@ SCHEMA = 1
 """The version of the JSON data of exercises."""
 
 DRAWS = 24
-"""The number of draws among which the one with the shortest numbers is used."""
+"""Number of times that random numbers are chosen for an exercise; the choice with the shortest answers is used."""
 
 MOST_DRAWS = 10_000
-"""The number of draws without suitable numbers after which symrot gives up."""
+"""Largest number of random choices, if none of the first :data:`DRAWS` suits the problem; then ProofError is raised."""
 
 ZERO = 30
-"""The length that an answer of zero counts as, so that such answers, which teach little, are rare."""
+"""Number of digits that an answer of zero counts as, so that such answers, which teach little, are rare."""
 
 DIGITS = 17  # significant digits that distinguish any two doubles
 
@@ -321,12 +321,15 @@ def _exact(asked: Asked, values: Mapping[Symbol, Expr]) -> Expr:
 
 
 def _slips(problem: Problem, asked: Asked, values: Mapping[Symbol, Expr], exact: Expr) -> Iterator[tuple[str, str]]:
-    """Yield the wrong answers to which usual slips lead, as pairs such as ``("diameter R", "0.5")``."""
+    """Yield the wrong answers to which usual slips lead, as pairs (slip, number).
+
+    ``("diameter R", "0.5")`` is the answer 0.5 if the diameter is used as the radius R.
+    """
     for quantity in problem.quantities:
         symbol = quantity.symbol
         if not asked.formula.has(symbol):
             continue
-        # a diameter used as a radius or the reverse, degrees used as radians, a unit that is not converted
+        # other slips: a radius used as a diameter, degrees used as radians, a unit that is not converted
         for code, value in _misused(quantity, values[symbol]):
             number = _exact(asked, {**values, symbol: value})
             if number.is_finite and number.is_real and number != exact:
@@ -345,9 +348,9 @@ def _misused(quantity: Quantity, value: Expr) -> Iterator[tuple[str, Expr]]:
 
 
 def _number_latex(exact: Expr, unit: str) -> str:
-    """Return an answer with its unit as LaTeX: the exact number, also rounded unless it is a short decimal.
+    r"""Return an answer with its unit as LaTeX: ``0.125`` for 1/8, ``\frac{1}{3} \approx 0.333333`` for 1/3.
 
-    A long exact number is only rounded.
+    A number of 40 or more letters of LaTeX is printed only rounded, after ``\approx``.
     """
     rounded = decimal(exact)
     latex = _scientific(rounded)

@@ -12,7 +12,7 @@ __all__ = [
 ]  # fmt: skip
 
 TURN = np.linspace(0.0, 2 * np.pi, 121)
-"""Angles of one revolution, rad."""
+"""Array of 121 evenly spaced angles from 0 to 2 pi, rad."""
 
 CIRCLE = np.stack([np.cos(TURN), np.sin(TURN)], axis=1)
 """Points of the unit circle in a plane, shape (121, 2)."""

@@ -33,7 +33,7 @@ class Argument:
 
     @property
     def places(self) -> dict[str, tuple[str, str, str]]:
-        """A map from each component as emitted functions write it, such as ``"q[1]"`` or ``"t"``, to the component."""
+        """A map from the text of each component in emitted functions, such as ``"q[1]"``, to (name, unit, meaning)."""
         if self.is_scalar:
             return {self.name: self.components[0]}
         return {f"{self.name}[{i}]": component for i, component in enumerate(self.components)}

@@ -32,7 +32,7 @@ HARMLESS_DEGREE = 6  # polynomials up to this degree are defined everywhere and 
 RISKY = HARMLESS_DEGREE + 1
 
 Conditions = tuple[tuple[Node, int], ...]
-"""Conditions: pairs of a formula of modes and the value that it must have."""
+"""Pairs (formula, value), each the condition ``formula = value``; the symbols of the formula are modes of switches."""
 
 
 class Switch(NamedTuple):
@@ -67,8 +67,8 @@ class Switch(NamedTuple):
 class Smooth(NamedTuple):
     """Smooth formulas in place of formulas with jumps and kinks, and the switches at which they change."""
 
-    formulas: tuple[Node, ...]  # with modes, and with where(p, a, b), p a formula of modes with the value 1 or 0
-    switches: tuple[Switch, ...]  # each after those whose modes occur in its guard
+    formulas: tuple[Node, ...]  # with modes, and with where(p, a, b), where p is a formula of modes, equal to 1 or 0
+    switches: tuple[Switch, ...]  # a switch comes after the switches whose modes occur in its guard
 
 
 def has_switches(node: Node) -> bool:
@@ -106,12 +106,12 @@ def condition_error(node: Node) -> str:
 
 
 def hold(conditions: Iterable[tuple[Node, int]], modes: Mapping[str, int], held: Collection[str] = ()) -> bool:
-    """Return whether all ``conditions``, pairs (formula, value), are true for the present ``modes``.
+    """Return whether all ``conditions``, pairs (formula, value), are true for the values of the ``modes``.
 
-    A condition with a mode in ``held`` counts as true.
+    ``held`` are the modes without a fixed value, because the motion slides along their switch (stays at the jump). A
+    condition with such a mode counts as true.
     """
-    # while the motion slides along a switch, its mode is held and has no fixed value
-    return all(names(share) & set(held) or evaluate(share, modes) == value for share, value in conditions)
+    return all(names(indicator) & set(held) or evaluate(indicator, modes) == value for indicator, value in conditions)
 
 
 def has_choices(node: Node) -> bool:
@@ -120,18 +120,19 @@ def has_choices(node: Node) -> bool:
 
 
 def chosen(node: Node, modes: Mapping[str, int], held: Collection[str] = ()) -> Node:
-    """Return a formula with each ``where(p, a, b)`` replaced by a, if p is 1 for the present ``modes``, or by b, if 0.
+    """Return a formula with each ``where(p, a, b)`` replaced by a, if p = 1 for the values of the ``modes``, else by b.
 
-    If p contains a mode in ``held``, ``b + p*(a - b)`` replaces it.
+    ``held`` are the modes without a fixed value, as for :func:`hold`: ``where(p, a, b)`` with such a mode in p is
+    replaced by ``b + p*(a - b)``.
     """
     if not has_choices(node):
         return node
     if node[:2] == ("call", "where"):
-        share, yes, no = node[2]
+        indicator, yes, no = node[2]
         # a motion slides along the switch: the mode changes too fast to be 1 or -1, and the sum is a mean
-        if names(share) & set(held):
-            return _blend(share, chosen(yes, modes, held), chosen(no, modes, held))
-        return chosen(yes if evaluate(share, modes) == 1 else no, modes, held)
+        if names(indicator) & set(held):
+            return _blend(indicator, chosen(yes, modes, held), chosen(no, modes, held))
+        return chosen(yes if evaluate(indicator, modes) == 1 else no, modes, held)
     return with_children(node, [chosen(child, modes, held) for child in children(node)])
 
 
@@ -185,7 +186,7 @@ def _is_linear(node: Node, mode: str) -> bool:
 
 
 def _degree(node: Node) -> int:
-    """Return the degree of a formula in time, states and sines of time, or RISKY if it may have a pole or pulse."""
+    """Return the degree of a formula in time, states and sines of time; RISKY if it may have a pole or short pulse."""
     kind = node[0]
     if kind in ("number", "symbol"):
         return int(kind == "symbol" and node[1] in CHANGING)
@@ -214,7 +215,7 @@ def _degree(node: Node) -> int:
 
 
 def _risky(condition: Node) -> bool:
-    """Return whether a condition compares formulas that may have no value somewhere, or a pole or pulse."""
+    """Return whether a condition compares a formula that may have a pole, a short pulse or no value somewhere."""
     if condition[1] == "less":
         return max(map(_degree, condition[2])) >= RISKY
     return any(map(_risky, condition[2]))
@@ -261,7 +262,10 @@ class _Writer:
         self.conditions: Conditions = ()  # conditions under which the part being rewritten applies
 
     def mode(self, kind: str, guard: Node, where: Conditions = (), at_zero: int = 1) -> Node:
-        """Return the symbol of the mode that belongs to a guard, and add a :class:`Switch` for a new guard."""
+        """Return the mode of a switch as a symbol; for a new guard, add the :class:`Switch`.
+
+        The arguments are the fields of :class:`Switch`; ``where`` is added to the conditions that hold already.
+        """
         where = self.conditions + where
         for count in range(len(where) + 1):  # a mode that applies under fewer of the conditions serves as well
             if (mode := self.known.get((kind, guard, where[:count], at_zero))) is not None:
@@ -271,14 +275,14 @@ class _Writer:
         self.known[kind, guard, where, at_zero] = ("symbol", name)
         return ("symbol", name)
 
-    def part(self, node: Node, share: Node, value: int) -> Node:
-        """Return ``node``, the a or b of ``where(c, a, b)``, without jumps; ``share`` is c as a formula of modes.
+    def branch(self, node: Node, indicator: Node, value: int) -> Node:
+        """Return ``node``, the a or b of ``where(c, a, b)``, as a smooth formula.
 
-        ``value`` is 1 for a and 0 for b.
+        The switches in the node get the condition that ``indicator``, a formula that is 1 where c holds and else 0, has
+        the ``value``: 1 for a, 0 for b.
         """
         outside = self.conditions
-        # the switches in the node matter only where share has that value
-        self.conditions = (*outside, (share, value))
+        self.conditions = (*outside, (indicator, value))
         smooth = self.smooth(node)
         self.conditions = outside
         return smooth
@@ -289,11 +293,11 @@ class _Writer:
             return node
         if kind == "call" and node[1] == "where":
             condition, yes, no = node[2]
-            share = self.share(condition)
+            indicator = self.indicator(condition)
             # a risky part is not evaluated while the other part applies
             if max(_degree(yes), _degree(no)) < RISKY:
-                return _blend(share, self.smooth(yes), self.smooth(no))
-            return ("call", "where", (share, self.part(yes, share, 1), self.part(no, share, 0)))
+                return _blend(indicator, self.smooth(yes), self.smooth(no))
+            return ("call", "where", (indicator, self.branch(yes, indicator, 1), self.branch(no, indicator, 0)))
         parts = tuple(map(self.smooth, children(node)))
         if node[:2] == ("call", "sqrt") and (split := square_under_root(parts[0])) and names(split[0]) & CHANGING:
             self.label = text(node)
@@ -308,24 +312,27 @@ class _Writer:
         self.label = text(node)
         return getattr(self, f"_{node[1]}")(*parts)  # type: ignore[no-any-return]
 
-    def share(self, condition: Node) -> Node:
-        """Return a formula of modes that is 1 if a condition holds, otherwise 0: ``(1 + s)/2`` for ``t < 1``."""
+    def indicator(self, condition: Node) -> Node:
+        """Return a formula of modes that is 1 if a condition holds, otherwise 0.
+
+        ``t < 1`` gives ``(1 + s)/2``, where the mode s is the sign of 1 - t.
+        """
         name, parts = condition[1], condition[2]
         if name == "less":
             left, right = map(self.smooth, parts)
             self.label = text(condition)
             return self._step(_difference(right, left))
-        shares = [self.share(parts[0])]
+        indicators = [self.indicator(parts[0])]
         if name == "not":
-            return ("-", ONE, shares[0])
+            return ("-", ONE, indicators[0])
         # in t < 1 and sqrt(1 - t) < omega_1, the root needs a value only before t = 1
         outside, risky = self.conditions, _risky(parts[1])
-        self.conditions = (*outside, (shares[0], int(name == "and"))) if risky else outside
-        shares.append(self.share(parts[1]))
+        self.conditions = (*outside, (indicators[0], int(name == "and"))) if risky else outside
+        indicators.append(self.indicator(parts[1]))
         self.conditions = outside
         # t < 1 and omega_1 < 0 gives (1 + s1)/2 * (1 + s2)/2
-        both: Node = ("*", *shares)
-        return both if name == "and" else ("-", ("+", *shares), both)
+        both: Node = ("*", *indicators)
+        return both if name == "and" else ("-", ("+", *indicators), both)
 
     def _sign(self, u: Node) -> Node:
         return self.mode("sign", u, at_zero=0)
@@ -367,5 +374,5 @@ def _difference(a: Node, b: Node) -> Node:
     return a if b == ("number", 0) else ("-", a, b)
 
 
-def _blend(share: Node, yes: Node, no: Node) -> Node:
-    return ("+", no, ("*", share, ("-", yes, no)))
+def _blend(indicator: Node, yes: Node, no: Node) -> Node:
+    return ("+", no, ("*", indicator, ("-", yes, no)))

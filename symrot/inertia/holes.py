@@ -1,8 +1,8 @@
 """Holes of a body of parts: whether each lies within parts whose density is at least its own. Standard library.
 
 A hole (a part with ``subtract = true``) is mass that is taken away. Where no part is, or where two holes overlap, the
-body would have a negative density. Such a body is refused at a point that shows it. A hole is accepted where bounds
-prove it to lie within the parts, and otherwise reported as doubtful.
+body would have a negative density. A body is refused if its density is negative at a test point. A hole is accepted if
+it is proven to lie within the parts, and otherwise reported as doubtful.
 """
 
 import math
@@ -24,10 +24,14 @@ from symrot.inertia.tensor import dot
 __all__ = ["DensePart", "PointMass", "dense_part", "doubtful_holes", "pose", "require_points"]
 
 ROUNDING = 1e-9
-"""Length by which a hole may reach out of a part, relative to its size, because dimensions are rounded numbers."""
+"""Length by which a hole may reach out of a part, relative to the radius of the ball around the hole.
+
+Dimensions are rounded numbers."""
 
 DENSITY = 0.01
-"""Share by which the density of a hole may exceed that of a part, because masses are rounded numbers."""
+"""Largest accepted excess of the density of a hole over that of the parts around it, relative to the parts' density.
+
+Masses are rounded numbers."""
 
 SHARES = (0.001, 0.25, 0.5, 0.75, 0.999)  # of the coordinates of a hole, at test points
 INWARDS = 1e-6  # share of the way from the end of a hole to its middle, at test points
@@ -70,7 +74,10 @@ def pose(at: Sequence[Any], rotation: Sequence[Sequence[Any]]) -> hulls.Pose:
 def dense_part(
     shape: str, dimensions: Mapping[str, Any], place: hulls.Pose, density: Fraction | Node, subtract: bool
 ) -> DensePart:
-    """Return a part for the test of holes; ``dimensions`` are its exact dimensions, in which points are tuples."""
+    """Return a part of a body with its exact ``dimensions``, and with a shape in doubles for the tests of holes.
+
+    ``dimensions`` maps names to lengths or, for the corners of a tetrahedron, to a tuple of points.
+    """
     rounded = {
         name: tuple(tuple(map(float, point)) for point in value) if isinstance(value, tuple) else float(value)
         for name, value in dimensions.items()
@@ -120,7 +127,11 @@ def doubtful_holes(parts: Sequence[DensePart | None], names: Sequence[str]) -> t
 
 
 def _is_within(hole: DensePart, near: Sequence[DensePart], radius: float) -> bool:
-    """Return whether bounds prove that the density of the body is nowhere negative in a hole."""
+    """Return whether the density of the body is proven to be nowhere negative in a hole.
+
+    ``near`` are the other parts that may touch the hole; ``radius`` is that of a ball around the hole, m. The hole is
+    tested as a whole, then in pieces (:func:`_pieces`).
+    """
     rounding = ROUNDING * radius
     added = [part for part in near if not part.subtract]
     others = [part for part in near if part.subtract and not are_apart(hole.solid, part.solid, rounding)]
@@ -135,8 +146,11 @@ def _is_within(hole: DensePart, near: Sequence[DensePart], radius: float) -> boo
 
 
 def _is_covered(hole: DensePart, near: Sequence[DensePart], radius: float) -> bool:
-    """Return whether the faces of parts cut a hole into pieces that bounds prove to lie within parts."""
-    # such as a round hole across the joint of two boxes
+    """Return whether a hole, such as a bore across the joint of two boxes, is proven to lie within several parts.
+
+    The planes of the parts' faces cut the hole into pieces; each must lie within parts of sufficient density. The
+    arguments are those of :func:`_is_within`.
+    """
     rounding = ROUNDING * radius
     hosts = [part for part in near if not part.subtract and is_convex(part.solid)]
     others = [part for part in near if part.subtract and not are_apart(hole.solid, part.solid, rounding)]
@@ -192,11 +206,11 @@ _CUT = {
 
 
 def _pieces(hole: hulls.Solid3, hosts: Sequence[hulls.Solid3]) -> list[hulls.Solid3]:
-    """Return the pieces into which the ends of the parts ``hosts`` cut a hole.
+    """Return the pieces into which a hole is cut, along its own axes, where one of the parts ``hosts`` begins or ends.
 
-    The list is empty for shapes other than boxes, cylinders and prisms, and if there would be too many pieces.
+    A bore through two plates that touch gives two pieces. The list is empty for shapes other than boxes, cylinders and
+    prisms, and if there would be more than MOST_PIECES pieces.
     """
-    # a bore through two parts that touch is cut where one ends and the other begins
     cuts = []
     for name, axis in _CUT.get(hole.shape, ()):
         half = hole.dimensions[name] / 2

@@ -177,7 +177,7 @@ def extent(piece: Piece, direction: Vec) -> float:
 
 
 def enclosing_disk(piece: Piece) -> Disk:
-    """Return a disk inflated by a ball that contains a piece."""
+    """Return an inflated disk (:class:`Disk`) that contains a piece."""
     if isinstance(piece, Disk):
         return piece
     radius = piece.radius if isinstance(piece, Dome) else max(math.hypot(*axis) for axis in piece.axes)
@@ -229,7 +229,7 @@ AXES: tuple[Vec, Vec, Vec] = ((1.0, 0.0, 0.0), (0.0, 1.0, 0.0), (0.0, 0.0, 1.0))
 
 
 def largest_distance(disk: Disk, point: Vec) -> float:
-    """Return the largest distance of a point of an inflated disk from ``point``."""
+    """Return the largest distance from ``point`` to points of a disk inflated by a ball (:class:`Disk`)."""
     offset = plus(disk.center, point, -1.0)
     along = dot(offset, disk.normal)
     across = math.sqrt(max(0.0, dot(offset, offset) - along * along))
@@ -242,7 +242,10 @@ def _across(axis: Vec) -> Vec:
 
 
 def polygon_around(disk: Disk) -> list[Vec]:
-    """Return the corners of a polygon that contains a disk, without the ball that inflates it."""
+    """Return the corners of a polygon around a flat disk; the radius of the ball in ``disk`` is not used.
+
+    For a disk of radius 0, the only corner is its centre.
+    """
     if not disk.radius:
         return [disk.center]
     first = _across(disk.normal)

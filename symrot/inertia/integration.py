@@ -200,7 +200,8 @@ def density_polynomial(density: Node, values: Mapping[str, Polynomial], source: 
 def moments(region: Domain, density: Polynomial | None = None) -> Moments:
     """Return the integrals of 1, x_i and x_i x_j over a shape, as polynomials in the dimensions and ``pi``.
 
-    ``density``, a polynomial in the coordinates of the map, is 1 if it is None.
+    ``density`` is a polynomial in the coordinates over which ``region`` integrates, such as a radius and an angle; if
+    it is None, the density is 1.
     """
     weight = region.jacobian if density is None else region.jacobian * density
     first = tuple(integrate(p * weight, region.limits) for p in region.position)

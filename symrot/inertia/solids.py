@@ -209,7 +209,8 @@ def _properties(
 ) -> tuple[Expr, ImmutableMatrix, ImmutableMatrix]:
     """Return mass, centre of mass, and inertia per mass about this centre, of a shape with the dimensions ``values``.
 
-    ``density`` is a polynomial in the coordinates of the map; without it, the mass is the measure of the shape.
+    ``density`` is a polynomial in the coordinates over which ``region`` integrates, such as a radius and an angle;
+    without it, the mass is the measure (volume, area or length) of the shape.
     """
     measure, specific_moments = moments_per_measure(region, density)
     if not specific_moments.zeroth:

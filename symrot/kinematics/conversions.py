@@ -311,13 +311,14 @@ def mrp_switch(s: Any) -> tuple[Array, Mask]:
 
 
 def places(sequence: str) -> tuple[tuple[int, int, int], tuple[int, int, int], int, int]:
-    """Return, for the product ``dcm_sb`` of three rotations, their axes, the positions of their angles, and m, sign.
+    """Return (axes, order, m, sign) of an Euler sequence, for the product of three rotations that gives ``dcm_sb``.
 
-    The first two axes have ``e_1 x e_2 = sign e_m``. ``"ZYX"`` gives (2, 1, 0), (0, 1, 2), 0, -1.
+    ``axes`` are those of the three factors, from left to right; ``order`` are the indices of their angles in the set of
+    Euler angles, (2, 1, 0) for an extrinsic sequence. The first two axes have ``e_1 x e_2 = sign e_m``. ``"ZYX"`` gives
+    (2, 1, 0), (0, 1, 2), 0, -1.
     """
     axes, intrinsic = parse_sequence(sequence)
     (first, middle, last), order = (axes, (0, 1, 2)) if intrinsic else (axes[::-1], (2, 1, 0))
-    # e_1 x e_2 = sign e_m for the axes of the first two rotations
     return (first, middle, last), order, 3 - first - middle, 1 if (middle - first) % 3 == 1 else -1
 
 

@@ -279,13 +279,13 @@ def _rate_jacobian(sequence: str, frame: str, parameters: tuple[Expr, ...]) -> E
 
 @cache
 def sequences_at_lock(sequence: str) -> dict[str, Set]:
-    """Return, for each other Euler sequence, at which gimbal-lock attitudes of ``sequence`` it is in gimbal lock too.
+    """Return a map from each other Euler sequence to the attitudes at which it and ``sequence`` are in gimbal lock.
 
-    In gimbal lock one angle, rad, determines the attitude; the result maps a sequence to a set of its values.
+    The attitudes are given as a set of values, rad, of the first angle of ``sequence`` (extrinsic: the third), while
+    the third (extrinsic: the first) is zero. The set is empty if there is no such attitude.
     """
     left, _, _ = factors(sequence)
-    # In gimbal lock only the sum or difference of the outer angles matters, so one of them is zero. The set is empty
-    # for a sequence that is regular at all these attitudes.
+    # in gimbal lock only the sum or difference of the outer angles matters, so one of them is zero
     chi = left.angle
     attitudes = []
     for point in rate_jacobian(sequence).singular_set.points():

@@ -155,7 +155,10 @@ def rotation_vector_of_quaternion(q: Sequence[Any] | Matrix = symbols.quaternion
 
 
 def dcm_of_axis_angle(axis: Sequence[Any] | Matrix = symbols.axis, angle: Any = symbols.alpha) -> ImmutableMatrix:
-    """Return ``dcm_sb`` of a rotation by ``angle`` (rad) about a unit axis, shape (3, 3)."""
+    """Return the matrix ``dcm_sb``, shape (3, 3), of a body that is rotated by ``angle`` (rad) about a unit axis.
+
+    It maps body components of a vector to space components.
+    """
     axis, angle = expressions(axis, 3, "an axis"), sympify(angle)
     c0, c1, c2 = function_of_skew(lambda z: exp(angle * z), Integer(1), Integer(1))
     matrix = skew(axis)

@@ -73,9 +73,9 @@ class Cursor:
                 space = False
 
     def inside(self, node: Node, read: Callable[[], Value], closing: str = "'}'") -> Value:
-        """Call ``read`` with the cursor at the start of ``node``, move back, and return its value.
+        """Call ``read`` at the start of ``node``, move back to the item where the cursor was, and return the value.
 
-        ``read`` must read all items of the node.
+        Raise InputError if ``read`` does not read all items of the node; the message says that ``closing`` is expected.
         """
         outside = self.items, self.index, self.open_bars
         self.enter(node)

@@ -13,7 +13,7 @@ from symrot.scene.torque import Torque
 __all__ = ["ensemble", "plan", "propagator", "scene"]
 
 PARTS_OF_SAMPLE = (5, 50, 95)
-"""Percentiles of an ensemble at its last time."""
+"""Percentiles of each component of omega over the motions of an ensemble, at its last time, that a table shows."""
 
 
 def scene(one: Scene) -> str:

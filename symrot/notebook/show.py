@@ -44,7 +44,8 @@ SingularityDossier or Emitted
     Raises
     ------
     InputError
-        For any other value, and for a trajectory without attitude under a torque without a formula.
+        For a value of another type, for a trajectory that reached none of its times or has only one time, and for a
+        trajectory without attitude whose torque is a Python function.
 
     Examples
     --------

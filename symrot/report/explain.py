@@ -14,7 +14,7 @@ if TYPE_CHECKING:
 __all__ = ["KERNEL", "explanation", "facts", "lines"]
 
 KERNEL = "deriving the kernel"
-"""Name of the row that says whether the cache contains the kernel."""
+"""Name of the row in the table of `symrot explain` that says whether the cache contains the scene's kernel."""
 
 HEAD = ("item", "", "rule", "derivation", "operations", "saved")
 FREE = frozenset({"neg"})  # a minus sign counts as part of its addition or multiplication
@@ -37,8 +37,10 @@ def _row(item: str, skipped: bool, why: str, derivation: str = "", operations: C
 
 
 def _ladder(plan: Plan) -> "list[PlanRow]":
-    """Return the rows of `symrot explain` about rules: first the general motion, then each rule with the operations it
-    saves.
+    """Return rows of the table of `symrot explain` that count the operations of the equations of motion.
+
+    The first row counts those of the most general equations. Each further row has a rule that shortens the equations
+    for this scene, such as equal moments, and how many operations the rule saves.
     """
     from symrot.planning.general_structure import general_structure
 
@@ -54,7 +56,7 @@ def _ladder(plan: Plan) -> "list[PlanRow]":
 
 
 def _others(plan: Plan) -> "list[PlanRow]":
-    """Return the rows of the table `symrot explain` that do not come from rules: states, method, outputs, cache."""
+    """Return the rows of the table of `symrot explain` that count no operations: states, method, outputs and cache."""
     from symrot.build import cache as library
     from symrot.propagation.compiled_models import kernel_key
     from symrot.propagation.method import choose_method

@@ -21,7 +21,8 @@ LEAST = 0.6  # position on the logarithmic axis of a motion without any operatio
 def figure(ladder: Mapping[str, Any]) -> Any:
     """Return a matplotlib Figure that compares kernels made for one scene with the general kernel: operations and time.
 
-    ``ladder`` is the result of :func:`symrot.bench.skip.measure`; the figure has one row per kernel.
+    ``ladder`` holds the measurements, as :func:`symrot.bench.skip.measure` returns them; the figure has one row per
+    kernel.
     """
     from matplotlib.figure import Figure
     from matplotlib.lines import Line2D
@@ -66,5 +67,8 @@ def figure(ladder: Mapping[str, Any]) -> Any:
 
 
 def save(ladder: Mapping[str, Any], path: Path) -> None:
-    """Write the figure of :func:`figure` to a file; the suffix of ``path`` decides the format."""
+    """Write the figure that :func:`figure` draws of the measurements ``ladder`` to a file.
+
+    The suffix of ``path`` decides the format.
+    """
     draw(lambda: figure(ladder), path)

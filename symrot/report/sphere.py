@@ -75,9 +75,10 @@ def _unit(vectors: Floats) -> Floats:
 
 
 def _eye(directions: Floats) -> Floats:
-    """Return axes of view for which the middle of the path ``directions`` lies on the near side, shape (3, 3).
+    """Return axes for a view of a sphere from which the middle of a path on the sphere is visible, shape (3, 3).
 
-    The rows are the unit vectors to the right, upward and toward the eye.
+    The rows are the unit vectors to the right, upward and toward the eye; ``directions`` are the points of the path as
+    unit vectors, shape (n, 3).
     """
     middle = directions.mean(axis=0)
     level = np.hypot(middle[0], middle[1])

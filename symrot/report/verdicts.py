@@ -17,7 +17,7 @@ INDENT = 18
 """The column at which the texts of a verdict begin, after their labels."""
 
 VERDICTS = ("true", "false", "conditional", "undecided", "recognised", "doubtful", "definition", "refused")
-"""The verdicts in the order in which they are counted."""
+"""All verdicts on claims, in their order in the line of counts below a list, such as "3 true, 1 false"."""
 
 
 def check(

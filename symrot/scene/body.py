@@ -333,8 +333,9 @@ def _bounded(value: Any, where: str) -> None:
 def _placed(parts: Sequence[Part], values: Mapping[str, Any], where: str, source: str, of_parts: str) -> Body:
     """Return the body composed of ``parts``.
 
-    ``values`` are the entries about, fixed_point and name of its table; ``source`` describes a body without a name;
-    ``where`` and ``of_parts`` are the places of the body and of its parts, for messages.
+    ``values`` has the entries ``"about"`` (centre of mass or fixed point), ``"fixed_point"`` and ``"name"`` of the
+    body's table in the scene file. ``source`` describes a body without a name; ``where`` and ``of_parts`` name the body
+    and its parts in messages.
     """
     body = _about_point(mass_properties(parts, of_parts), values, where, source)
     return body._replace(parts=tuple(parts), warnings=doubtful_holes(parts, of_parts))

@@ -42,7 +42,10 @@ EXCLUSIVE: dict[tuple[str | int, str | int], str] = {
     ("torque", "weight"): "gravity",
     ("torque", "gravity"): "weight",
 }
-"""Table and key of a value -> the key of the same table that the value replaces."""
+"""(Top-level table of a path, key) -> the key that may not stand beside this key, in the same table.
+
+If a value with one of both keys is set, the value with the other key is removed.
+"""
 
 RATES = ("omega_1", "omega_2", "omega_3")
 MOST_STEPS = 1_000_000  # more than any path has
@@ -67,8 +70,8 @@ class Place(NamedTuple):
 class SceneContent(NamedTuple):
     """The content of a scene, and what was read from it: initial angular velocity, body and torques.
 
-    A number that the content gives in another form is taken from these objects: a component of omega in the body, for
-    example, if the content gives ``omega_space``.
+    A number that does not stand in the content, because others determine it, is taken from these objects: a body
+    component of omega, for example, if the content has the space components ``omega_space``.
     """
 
     content: Content
@@ -203,7 +206,10 @@ def _exclude(one: Path, other: Path) -> bool:
 
 
 def _rival(path: Path, key: str | int) -> str:
-    """Return the key of the value that a value called ``key``, in a table on ``path``, replaces; empty if none."""
+    """Return the key that may not stand beside ``key``, such as ``"density"`` for ``"mass"``; empty if there is none.
+
+    ``path`` is the path of a value in the same table.
+    """
     # names of parameters are the user's
     return "" if "parameters" in path else EXCLUSIVE.get((path[0], key), "")
 

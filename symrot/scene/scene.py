@@ -89,7 +89,11 @@ class Scene:
 
     @property
     def warnings(self) -> tuple[str, ...]:
-        """Sentences about what may be a mistake: holes that may reach out, bent polygons, parameters without use."""
+        """Sentences about possible mistakes in the scene; empty if there are none.
+
+        They concern holes that may reach out of the body, polygons of a mesh that are not flat, and parameters that no
+        formula uses.
+        """
         return (*self.body.warnings, *(warning for torque in self.torques for warning in torque.warnings))
 
     @classmethod

@@ -37,7 +37,7 @@ class Axis:
 
 @dataclass(frozen=True)
 class Draws:
-    """The varied values of some trajectories of a design, one row for each trajectory."""
+    """The values that vary in a sweep, for some of its trajectories: one row for each trajectory."""
 
     values: Floats  # (n, axes)
     attitudes: Floats | None  # (n, 4), unit quaternions; None: the attitude of the scene

@@ -49,14 +49,14 @@ DISTRIBUTIONS: dict[str, _Family] = {
         lambda u, low, high: np.exp(np.log(low) + (np.log(high) - np.log(low)) * u),
     ),
 }
-"""For each name of a distribution, its family."""
+"""Name of a distribution -> its family."""
 
 GRIDS = {
     "linspace": "linspace(first, last, count)",
     "geomspace": "geomspace(first, last, count)",
     "values": "values(a, b, ...)",
 }
-"""For each name of a grid, how it is written."""
+"""Name of a kind of grid (law that lists values) -> the form in which a user writes it."""
 
 
 @dataclass(frozen=True)
@@ -73,7 +73,7 @@ class Distribution:
 
 @dataclass(frozen=True)
 class Grid:
-    """A law that lists the values of a quantity; each is used with all values of the other grids."""
+    """A list of the values that one quantity takes in a sweep; each is combined with all values of the other grids."""
 
     values: tuple[float, ...]
 

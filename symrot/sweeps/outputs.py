@@ -47,7 +47,10 @@ REDUCTIONS: dict[str, tuple[str, Callable[[Floats], Floats]]] = {
     "max": ("largest value among the samples", lambda values: values.max(axis=1)),
     "mean": ("mean of the samples", lambda values: values.mean(axis=1)),
 }
-"""For each name after @, its meaning and the function from samples, shape (n, m), to the output, shape (n,)."""
+"""Name of a reduction, such as ``max`` in the output ``omega_3@max`` -> its meaning and its function.
+
+The function takes the m samples of n trajectories, shape (n, m), and returns one number for each, shape (n,).
+"""
 
 
 @dataclass(frozen=True)

@@ -262,7 +262,10 @@ class _Search:
 
 
 def _narrowed(blocks: Blocks, searches: list[_Search], values: dict[tuple[int, int], float]) -> list[_Search]:
-    """Read all values once; put results into ``values``, and return the unfinished searches with narrower intervals."""
+    """Narrow the intervals of searches for values of given ranks; return the searches that are not finished.
+
+    A value that was found is put into ``values`` under the key (column, rank). The blocks are read at most once.
+    """
     open_searches = []
     for search in searches:
         if search.first == search.last:
@@ -292,7 +295,7 @@ def _narrowed(blocks: Blocks, searches: list[_Search], values: dict[tuple[int, i
     narrower = []
     for k, search in enumerate(open_searches):
         if small[k]:
-            # few values are sorted; the key of a result is (column, rank)
+            # few values are sorted
             ordered = _values(np.sort(np.concatenate(members[k])))
             values |= {(search.column, rank): float(ordered[r]) for r, rank in search.ranks.items()}
         else:
@@ -301,11 +304,11 @@ def _narrowed(blocks: Blocks, searches: list[_Search], values: dict[tuple[int, i
 
 
 def _split(search: _Search, counts: NDArray[np.int64], shift: int) -> list[_Search]:
-    """Return searches in those parts of an interval that contain the ranks; ``counts`` are numbers of values per part.
+    """Return searches in those parts of the interval of ``search`` that contain values of its ranks (0: the smallest).
 
-    For ``counts`` 5 and 7, rank 6 becomes rank 1 of a search in the second part.
+    Each part has 2^shift keys, and ``counts`` has the number of values in each part. For ``counts`` 5 and 7, rank 6
+    becomes rank 1 of a search in the second part.
     """
-    # rank 0 is the smallest value; each part has 2^shift keys
     ends = np.cumsum(counts)
     parts: dict[int, _Search] = {}
     for rank, whole in search.ranks.items():
@@ -321,12 +324,12 @@ _SIGN = np.uint64(2**63)
 
 
 def _keys(values: Floats) -> Keys:
-    """Return integers that have the same order as the doubles ``values``; -0.0 has the key of 0.0."""
+    """Return an integer (key) for each of the doubles ``values``, in the same order; -0.0 has the key of 0.0."""
     bits = np.ascontiguousarray(values + 0.0).view(np.uint64)
     keys: Keys = np.where(bits & _SIGN, ~bits, bits | _SIGN)
     return keys
 
 
 def _values(keys: Keys) -> Floats:
-    """Return the doubles for the integers ``keys``, the inverse of :func:`_keys`."""
+    """Return the doubles whose keys, integers in the same order, are ``keys``: the inverse of :func:`_keys`."""
     return np.where(keys & _SIGN, keys ^ _SIGN, ~keys).view(np.float64)

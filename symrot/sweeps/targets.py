@@ -143,7 +143,7 @@ def _numbers_in(content: Content) -> list[str]:
 def constants_of(path: Path, scene: Scene, content: Content) -> list[str]:
     """Return the names of the constants of the equations that the number at ``path`` may change, such as ``I_xx``.
 
-    They depend only on the table with this number, so that they are the same for all its values.
+    The result depends on the table in which the number stands, not on the value of the number.
     """
     places = constant_places(scene)
     if path[0] == "initial":

@@ -16,7 +16,7 @@ __all__ = [
 ]  # fmt: skip
 
 DOCUMENTS = ("chen", "sahakian", "brown", "beer-johnston")
-"""The short names of the documents."""
+"""Short names of the four documents on rigid-body rotation whose claims come with symrot."""
 
 LINE_KINDS = {
     "operators": "the signs of a formula whose letters the extraction put on other lines",
@@ -30,7 +30,9 @@ LINE_KINDS = {
     "label": "the label of a figure, a heading, or a number of an equation that was extracted without its formula",
     "other": "the title of another document",
 }
-"""Kind of a line that states no formula of its own -> its description. The first four kinds name a claim."""
+"""Kind of a line that states no formula of its own -> its description.
+
+Lines of the first four kinds belong to a claim: their ``claim`` is the name of the claim that states the formula."""
 
 
 class Document(NamedTuple):

@@ -146,7 +146,10 @@ def _why_played(scene: Scene, trajectory: Trajectory | None) -> str:
 
 
 def _free_structure(scene: Scene) -> Any:
-    """Return the structure of a scene for a page on which all constants may change: none is assumed zero or equal."""
+    """Return the structure of the equations of motion for the page of a scene, on which the reader changes constants.
+
+    It assumes no constants to be zero or equal, except that products of inertia are zero in principal body axes.
+    """
     structure = general_structure(scene)
     # Principal body axes stay principal: no products of inertia.
     if scene.body.principal.given_axes:
@@ -219,7 +222,7 @@ def _orbit_constant(plan: Plan) -> str:
 def _rest(value: Fraction) -> float:
     """Return a number minus its nearest double, as a double.
 
-    The page adds the two doubles and has 32 digits in all.
+    The page of a scene gets both doubles; their sum has 32 digits.
     """
     return float(value - Fraction(float(value)))
 
@@ -241,8 +244,9 @@ def _packed(values: Floats) -> str:
 
 
 def _played(motion: Trajectory, reason: str) -> dict[str, Any]:
-    """Return a motion that the page plays, as evenly spaced samples of omega and quaternion, close enough to
-    be drawn.
+    """Return a motion that the page plays, as evenly spaced samples of omega and quaternion, close enough to be drawn.
+
+    ``reason`` says why the page plays the motion. InputError is raised for a trajectory without attitude.
     """
     if not motion.has_attitude:
         raise InputError('show: expected a trajectory with attitude; add "quaternion" to output.quantities')
@@ -287,8 +291,9 @@ def _tableau() -> dict[str, Any]:
 
 
 def _angle_kernels(sequence: str) -> dict[str, Program]:
-    """Return two functions of the page, under their names: from quaternion to Euler angles of ``sequence``, and
-    back.
+    """Return the kernels that a scene's page uses for Euler angles of ``sequence``, under their names in JavaScript.
+
+    ``angles_of_quaternion`` computes the angles of a quaternion, ``quaternion_of_angles`` the quaternion of angles.
     """
     from symrot.codegen.library_kernels import kernel_program
 

@@ -33,7 +33,10 @@ def _texts() -> dict[str, str]:
 
 
 def library_tasks() -> dict[str, BoundTask]:
-    """Return the tasks of bounding the rounding errors of all library kernels, by their keys in the table."""
+    """Return a map from each key of the table to its task: to bound the rounding error of one output of a kernel.
+
+    The kernels are those of the library, with functions for doubles and for floats.
+    """
     by_key: dict[str, BoundTask] = {}
     for name, text in _texts().items():
         for operations in operations_of(name, text):
@@ -77,7 +80,10 @@ def _is_consistent(task: BoundTask, search: SearchResult | None) -> bool:
 
 
 def main(arguments: Sequence[str] | None = None) -> int:
-    """Write the table of bounds, or with ``--check`` only check the table; return the exit code."""
+    """Write the table of the library kernels' rounding-error bounds to symrot's folder; return the exit code.
+
+    With ``--check`` the table is only checked; the exit code is 1 if it has faults.
+    """
     parser = ArgumentParser(
         prog="python -m symrot.workshop.bound_table", description="Write the bounds of the library."
     )

@@ -1,4 +1,4 @@
-"""Comparison of a kernel's files on disk with the emitted ones, to explain a failed hash.
+"""Comparison of a kernel's files on disk with the texts that symrot emits for it, to explain a failed hash.
 
 The result names the first changed line, and the first output whose C text no longer computes its formula.
 """
@@ -30,9 +30,11 @@ def kernel_of(name: str) -> str | None:
 
 
 def difference(certificate: Path) -> str:
-    """Return ": " and the first difference between a kernel's files and the emitted ones; ``""`` if there is none."""
+    """Return ": " and the first difference between a kernel's files and the texts that symrot emits, else ``""``.
+
+    ``certificate`` is the path of NAME.cert.json, in the folder of the files. Files that cannot be read are skipped.
+    """
     name = certificate.name.removesuffix(".cert.json")
-    # ``certificate`` is the path of NAME.cert.json, next to the files
     kernel = kernel_of(name)
     if kernel is None:
         return ""

@@ -73,8 +73,10 @@ class Certificate:
 
     @property
     def refuted(self) -> bool:
-        """Whether code whose flags must preserve every bit was compared and is not proven to do so."""
-        # False if object code was not compared in this call
+        """Whether this call compared object code and did not prove that the code computes the same bits as the C text.
+
+        Only code compiled with flags that preserve every bit counts. The value is False if no code was compared.
+        """
         return self.objects_compared and certificates.refuted([dict(self.data)])
 
     def __str__(self) -> str:

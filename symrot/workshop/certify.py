@@ -325,8 +325,11 @@ def all_lines(certificates: Mapping[str, Data]) -> list[str]:
 
 
 def refuted(certificates: Iterable[Data]) -> bool:
-    """Return whether a certificate has verdicts on object code that do not prove that it computes the C text's bits."""
-    # only code whose flags preserve every bit counts; without any such code the proof is missing
+    """Return whether the object-code section of a certificate lacks the proof that the code computes the C text's bits.
+
+    False if no certificate has such a section. Only code compiled with flags that preserve every bit counts.
+    """
+    # without any such code the proof is missing
     return any(data.get("objects") and not object_code.holds(data["objects"]) for data in certificates)
 
 

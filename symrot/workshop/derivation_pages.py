@@ -270,8 +270,10 @@ def write_handout(directory: Path | str, form: str, chosen: Sequence[str], say: 
 
 
 LINK = re.compile(r"\[(?P<label>[^\]]+)\]\((?P<page>\w+)\.md\)")
+"""Regular expression of a link to another page in Markdown."""
+
 LINK_IN_HTML = re.compile(r'<a href="(?P<page>\w+)\.html">(?P<label>.*?)</a>')
-"""Links between pages."""
+"""Regular expression of a link to another page in HTML."""
 
 
 def _present(directory: Path, chosen: Sequence[str], suffix: str) -> set[str]:

@@ -72,8 +72,8 @@ def certificate_files(
 ) -> dict[str, str]:  # fmt: skip
     """Return the certificate file of a kernel, as a map from file name to text; empty if it has no certificate.
 
-    Verdicts on object code and, for a time step, bounds of errors are copied from the certificate of that name in
-    ``directory`` if it is about the same C text.
+    Verdicts on object code and, for a time step, bounds of errors are copied from the kernel's certificate that is
+    already in ``directory``, if it is about the same C text.
     """
     if not kernel.has_certificate:
         return {}
@@ -91,9 +91,9 @@ def certificate_files(
 def stored_bounds(kernel: KernelText, directory: Path | None) -> Mapping[str, Any] | None:
     """Return the rounding bounds in a scene kernel's certificate in ``directory``, after they were checked.
 
-    The result is None if there are none, or if they do not hold for the kernel.
+    The result is None if there are no bounds, if they do not hold for the kernel, or for a library kernel, whose bounds
+    come with symrot.
     """
-    # a library kernel has bounds of its own
     if directory is None or not isinstance(kernel, SceneText):
         return None
     section = _slots(directory / f"{kernel.name}.cert.json").get("rounding")

@@ -126,7 +126,7 @@ class KernelText(ABC):
 
 
 class LibraryText(KernelText):
-    """The texts of a library kernel; its bounds of rounding errors hold on standard ranges of the inputs."""
+    """The texts of a kernel of symrot's library; its rounding bounds hold on the ranges of inputs in its definition."""
 
     folders: ClassVar[Mapping[str, str]] = {"numpy": "../numpy", "js": "../js", "jax": "../jax"}
 
@@ -228,7 +228,7 @@ class SceneText(KernelText):
         return scene_description(self.scene.title, self.scene.name, target, lines, self.jacobian, note)
 
     def c(self, bounds: Bounds | None = None) -> tuple[str, str]:
-        """Return the C source and its header, whose head comments state the bounds."""
+        """Return the pair (C source, header); the comment at the head of the source states ``bounds``, if any."""
         description = self._description("c", header_lines(self.inputs, bounds) if bounds else ())
         return with_head(self.program, description, self._functions), c_header(self.program, description)
 

@@ -55,11 +55,11 @@ def _dop853(order: int) -> RungeKutta:
 STEPS: Mapping[str, Callable[[int], RungeKutta | TaylorSeries]] = {
     "rk4": lambda order: RK4, "taylor": TaylorSeries, "dop853": _dop853,
 }  # fmt: skip
-"""Name of a method -> the function that makes it from the order of the Taylor series, which only ``taylor`` uses."""
+"""Name of a method -> function of an order that returns the method; only that of ``taylor`` uses its argument."""
 
 
 def step_method(name: str, order: int | None = None, jacobian: Sequence[str] = ()) -> Method:
-    """Return the method of a step.
+    """Return the integration method with a given name.
 
     Parameters
     ----------
@@ -196,7 +196,7 @@ class StepText(StepFiles):
 
     @property
     def _derivation(self) -> str:
-        """The pages that derive the formulas of the step."""
+        """The paths of the pages that derive the formulas of the step, separated by commas."""
         if isinstance(self.method, SteadyRotations):
             return f"derivations/{'spherical_body' if self.method.axis is None else 'symmetric_gyrostat'}.md"
         return "derivations/euler_equations.md, derivations/quaternion_rates.md"

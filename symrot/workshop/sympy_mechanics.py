@@ -1,6 +1,7 @@
 """Rigid bodies, inertia dyadics and frames of ``sympy.physics.mechanics``, to and from symrot.
 
-Conventions agree: inertia tensors contain the minus sign of the products, and ``N.dcm(B)`` is ``dcm_sb``.
+Conventions agree: inertia tensors contain the minus sign of the products, and for a space frame N and a body frame B,
+``N.dcm(B)`` is symrot's ``dcm_sb``, which maps body components to space components.
 """
 
 from fractions import Fraction
@@ -40,8 +41,8 @@ def from_sympy(value: Any, frame: ReferenceFrame | None = None) -> Any:
     Raises
     ------
     InputError
-        For another value, a missing frame, a frame or symbols in addition to a rigid body, or frames that are not
-        connected.
+        For a value of another type, a missing frame, frames that are not connected, a rigid body with a ``frame``
+        argument, or a rigid body whose mass or inertia contains symbols.
 
     Examples
     --------

@@ -34,7 +34,7 @@ ADAPTIVE = tuple(float(Fraction(1, 10**k)) for k in range(2, 14))  # SciPy takes
 
 
 class Contestant(NamedTuple):
-    """A method with its settings; in a work-precision study each contestant has one curve of time and error."""
+    """A method with its settings; in a work-precision study each contestant has one curve of time against error."""
 
     name: str
     # the name that selects the contestant in --methods
@@ -186,7 +186,7 @@ CONTESTANTS: tuple[Contestant, ...] = (
         for method in ("DOP853", "RK45", "LSODA", "Radau")
     ),
 )  # fmt: skip
-"""All contestants, symrot's own first."""
+"""The methods of symrot and of other programs that a work-precision study can compare, symrot's own first."""
 
 GROUPS = tuple(dict.fromkeys(contestant.group for contestant in CONTESTANTS))
 

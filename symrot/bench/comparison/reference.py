@@ -340,4 +340,8 @@ REFERENCES: tuple[tuple[str, Callable[[Problem, Progress, float], list[State]]],
     ("closed form", _closed_form),
     ("extrapolated midpoints in long double", _extrapolated),
 )
-"""The references, the preferred first."""
+"""Pairs (name, function) of the methods that compute reference solutions of a motion, the preferred method first.
+
+A function returns the states at the end times of its first argument, or raises ``_Unavailable``. The other arguments
+are a function for lines about progress, and the longest time in s.
+"""

@@ -34,12 +34,14 @@ TOP: dict[str, Any] = {
     "initial": {"omega": ["1/10", "1/5", 20], "attitude": {"sequence": "ZXZ", "angles": [0, "1/2", 0]}},
     "torque": [{"kind": "gravity", "weight": 20}, {"kind": "damping", "linear": "1/100"}],
 }
-"""A heavy top with damping, which has no closed form, without the span of time."""
+"""Scene of a damped heavy top, whose motion has no closed form; the key ``span`` (times) is added for each run."""
 
 VARY = {"omega_1": "normal(0.1, 0.1)", "weight": "uniform(15, 25)"}
 OUTPUTS = ("omega_1", "axis_z", "energy")
 QUIET = {"distributed.admin.tick.interval": "1s", "distributed.admin.system-monitor.interval": "5s"}
-"""Settings of Dask: how often a cluster measures its latency and its memory, by default 50 and 2 times a second."""
+"""Settings of Dask: a cluster measures its latency every second and its memory every 5 s.
+
+Dask's defaults are 50 and 2 times a second."""
 
 PART = 100_000  # motions of one call of propagate_ensemble, so that its results fit in memory
 
@@ -71,7 +73,10 @@ def _sweep(scene: Scene, count: int, workers: int | None, scheduler: str | None 
 
 
 class Cost(NamedTuple):
-    """What a sweep on a cluster takes: seconds, processor time of client and scheduler, and of the workers, s."""
+    """The cost of a sweep on a cluster, in s: elapsed time, and the processor times of client and of workers.
+
+    The scheduler runs in the process of the client.
+    """
 
     seconds: float
     client: float
@@ -84,7 +89,10 @@ class Cost(NamedTuple):
 
 
 def _on_cluster(scene: Scene, count: int, workers: int) -> Cost:
-    """Return the cost of a sweep by ``workers`` Dask workers with one thread each, which have run a short sweep."""
+    """Return the cost of a sweep by ``workers`` Dask workers with one thread each.
+
+    Before the measurement the workers run a short sweep, so that starting and compiling do not count.
+    """
     import dask
     from distributed import Client, LocalCluster
 

@@ -170,9 +170,10 @@ def best(runs: Iterable[dict[str, Any]], error: float) -> dict[str, Any] | None:
 
 
 def decades(runs: Sequence[dict[str, Any]], floor: float = 0.0) -> list[dict[str, Any]]:
-    """Return the rows of the printed table, one for each power of ten of the error (decade) down to ``floor``.
+    """Return the rows of the printed table, one for each bound of the error (a power of ten) down to ``floor``.
 
-    A row has each method's time and its ratio to the time of the fastest method.
+    A row has each method's time and its ratio to the time of the fastest method. Errors that no run reaches have no
+    row.
     """
     names = list(dict.fromkeys(run["method"] for run in runs))
     rows = []
@@ -196,14 +197,16 @@ def decades(runs: Sequence[dict[str, Any]], floor: float = 0.0) -> list[dict[str
 
 
 def against(rows: Sequence[dict[str, Any]]) -> list[dict[str, Any]]:
-    """Return, for each other program, the median and the smallest of the ratios of its time to symrot's, over all
-    decades.
+    """Return, for each program in ``rows`` (:func:`decades`) other than symrot, its times divided by symrot's.
+
+    A dict of the list has the program's name (``peer``) and the ratios to symrot's steppers (``stepped``) and to all
+    methods of symrot (``all``): ``median``, ``least``, and ``ratios``, which has one for each bound of the error.
     """
     peers = list(dict.fromkeys(name for row in rows for name in row["methods"] if name not in (*OURS, "symrot scipy")))
     settings = [name for name in peers if name.startswith("heyoka")]
     asked = [(name, (name,)) for name in peers]
     if len(settings) > 1:
-        # heyoka's fastest setting at each decade counts as one more program
+        # heyoka's fastest setting at each error counts as one more program
         asked.append(("heyoka, best setting", tuple(settings)))
     comparisons = []
     for title, names in asked:
@@ -219,10 +222,10 @@ def against(rows: Sequence[dict[str, Any]]) -> list[dict[str, Any]]:
 
 
 def _ratios(rows: Sequence[dict[str, Any]], ours: Sequence[str], theirs: Sequence[str]) -> dict[str, float]:
-    """Return, for each decade, the least time of the methods ``theirs`` divided by the least time of the methods
-    ``ours``.
+    """Return a map from bounds of the error, such as "1e-06", to the ratio of two times at this error.
 
-    Decades that one side does not reach are left out.
+    The ratio is the least time of the methods ``theirs`` divided by the least time of the methods ``ours``. Errors that
+    one side does not reach are omitted.
     """
     ratios = {}
     for row in rows:

@@ -33,7 +33,10 @@ class Carried(NamedTuple):
 
 
 def laws() -> list[tuple[str, bool]]:
-    """Return how one tangent or secant step changes lengths, as pairs (formula, whether it was proven)."""
+    """Return formulas for the length of a position r after one tangent or secant step, with the result of their proof.
+
+    Each pair is (formula, whether it was proven); the steps are those at the top of this module.
+    """
     from sympy import Matrix, eye, symbols
 
     from symrot.exact import is_zero

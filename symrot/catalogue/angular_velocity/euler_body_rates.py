@@ -17,7 +17,7 @@ from symrot.proof.notation.printer import formula
 
 RATES = Matrix(symbols.angle_rates)
 EXAMPLE = "ZXZ"
-"""The sequence for which the page prints the proof in full; tables on the page have a row for each sequence."""
+"""Sequence of Euler angles whose proof the page of this derivation prints in full; tables state the other sequences."""
 
 THREE_AXES = r"\dot\phi\,e_z + \dot\theta\,R_z(\phi)\,e_x + \dot\psi\,R_z(\phi)\,R_x(\theta)\,e_z"
 

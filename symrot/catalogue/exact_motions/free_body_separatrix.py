@@ -13,11 +13,11 @@ H, SIGN = symbols.H, symbols.sigma
 ONE, _, THREE = symbols.momentum_amplitudes
 P, TIME, PSI = symbols.p, symbols.t, symbols.psi
 MIDDLE = A * C * (ONE**2 + THREE**2) / (C * ONE**2 + A * THREE**2)
-"""The intermediate moment, from H^2 = 2 T B."""
+"""Formula of the intermediate moment B on the separatrix, from H^2 = 2 T B and the momentum at t = 0."""
 SPEED = SIGN * THREE * (C - MIDDLE) / (MIDDLE * C) * H / ONE
 RELATIONS = [H**2 - ONE**2 - THREE**2, SIGN**2 - 1]
 SHARE = Symbol("h")
-"""tanh(p t/2)"""
+"""Symbol for the function of time h = tanh(p t/2) with the rate p in 1/s; the motion is a rational function of h."""
 
 
 def derive() -> Derivation:

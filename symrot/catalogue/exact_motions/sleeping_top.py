@@ -13,7 +13,7 @@ from symrot.proof.derivation import Derivation
 
 A, C, W, ARM, T, P = symbols.A, symbols.C, symbols.W, symbols.c_3, symbols.t, symbols.p
 TURN = Symbol("h")
-"""tanh(p t)"""
+"""Symbol for the function of time h = tanh(p t), with the rate p in 1/s at which the axis approaches the vertical."""
 
 
 def derive() -> Derivation:

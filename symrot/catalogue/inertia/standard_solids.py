@@ -20,12 +20,14 @@ MEASURE = {"solid": "V", "surface": "S", "curve": r"\ell"}
 PRODUCTS = ((0, 1), (0, 2), (1, 2))
 LONG, WIDE = 300, 140  # characters of LaTeX of a reason, and of a cell of a table
 EXAMPLE = "cone"
-"""The body for which the page prints the proof in full; tables on the page have a row for each other body."""
+"""The body whose proof the page of this derivation prints in full; tables have a row for each other body."""
 DRAWN = "The bodies with their axes"
-"""The section with the figures of the other bodies."""
+"""Title of the section of the page with the figures of all bodies except :data:`EXAMPLE`."""
 SPECIAL = {"tetrahedron": {"vertices": [(0, 0, 0), (symbols.a, 0, 0), (0, symbols.b, 0), (0, 0, symbols.c)]}}
-"Tetrahedron with one corner at the origin and three edges along the axes; a linear map and a shift turn it into any "
-"other tetrahedron."
+"""Name of a body -> arguments of :func:`symrot.inertia.solids.solid` that simplify the body without loss of generality.
+
+The tetrahedron has a corner at the origin and three edges along the axes; a linear map and a translation turn it into
+any other tetrahedron."""
 
 Moments = dict[tuple[int, ...], Expr]
 
@@ -155,7 +157,10 @@ def _claim(prefix: str, claim: str) -> str:
 
 
 def _measure(d: Derivation, body: Solid, prefix: str = "") -> list[Step]:
-    """Add the steps for the Jacobian of a body's map and for its measure; ``prefix`` begins their claims."""
+    """Add and return two steps: the Jacobian of the map from coordinates to points of a body, and the body's measure.
+
+    The measure is the volume, area or length; ``prefix`` begins the claims of these steps.
+    """
     coordinates = [variable for variable, _, _ in body.limits]
     letter = MEASURE[body.shape.kind]
     columns = body.position.jacobian(coordinates)
@@ -187,7 +192,7 @@ def _limits(body: Solid) -> str:
 
 
 def _moments(d: Derivation, body: Solid, prefix: str = "") -> list[Step]:
-    """Add the steps for first and second moments and for the inertia tensor; ``prefix`` begins their claims."""
+    """Add and return the steps for the moments of a body and its inertia tensor; ``prefix`` begins their claims."""
     letter, steps = MEASURE[body.shape.kind], []
     moments: Moments = {}
     products: list[tuple[int, ...]] = [(0,), (1,), (2,), (0, 0), (1, 1), (2, 2), *PRODUCTS]

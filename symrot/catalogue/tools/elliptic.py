@@ -27,17 +27,19 @@ def derivatives(speed: Expr = S.One, parameter: Expr = MU) -> dict[Symbol, Expr]
 
 
 def squares(parameter: Expr = MU, fixed: bool = False) -> list[Expr]:
-    """Return ``[s^2 + c^2 - 1, d^2 + mu s^2 - 1]``, zero for s, c, d = sn, cn, dn at the argument u, or at w if
-    ``fixed``.
+    """Return ``[s^2 + c^2 - 1, d^2 + mu s^2 - 1]``, which is zero; s, c, d are sn, cn, dn and mu is ``parameter``.
+
+    The functions are the symbols of their values at the variable argument u, with ``fixed`` at a constant argument w.
     """
-    # with fixed, at the fixed argument w; mu is the parameter
     s, c, d = W_VALUES if fixed else (SN, CN, DN)
     return [c**2 - 1 + s**2, d**2 - 1 + parameter * s**2]
 
 
 def shifted(sign: int = 1, at: tuple[Expr, Expr, Expr] = W_VALUES, parameter: Expr = MU) -> tuple[Expr, Expr, Expr]:
-    """Return sn, cn and dn of u + w (``sign`` 1) or u - w (-1) by the addition theorems."""
-    # the values at w; those at u are the symbols SN, CN and DN
+    """Return sn, cn and dn of u + w (``sign`` 1) or u - w (-1) by the addition theorems.
+
+    ``at`` are sn, cn and dn of w; the symbols SN, CN and DN are sn, cn and dn of u.
+    """
     s, c, d = at
     s = sign * s
     below = 1 - parameter * SN**2 * s**2

@@ -28,7 +28,7 @@ def over_particles(term: Callable[[Expr, Matrix], Any]) -> Any:
 
 
 def _sum_of(term: Any) -> Any:
-    """Return the sum of a term over the particles; the term contains the symbols of any mass and any position."""
+    """Return the sum of ``term`` over three particles; its symbols m_i and r_i are mass and position of particle i."""
     return over_particles(
         lambda m, r: term.subs({ANY_MASS: m} | dict(zip(ANY_PLACE, r, strict=True)), simultaneous=True)
     )
@@ -44,7 +44,7 @@ INERTIA = over_particles(lambda m, r: Matrix(inertia_of_point(m, r)))
 """The inertia tensor of the particles about the point from which their positions are measured."""
 
 NAMES: dict[str, Any] = {"m_i": ANY_MASS, "r_i": ANY_PLACE, COUNT: _sum_of}
-"""The meanings of ``m_i``, ``r_i`` and the sum for :meth:`symrot.proof.derivation.Derivation.notation`.
+"""Names in the LaTeX of a step -> what they mean, an argument of :meth:`symrot.proof.derivation.Derivation.notation`.
 
-The sum stands before its terms in parentheses.
+``m_i`` and ``r_i`` are mass and position of particle i; the sum sign ``\\sum_i`` sums the parentheses after it.
 """

@@ -1,6 +1,7 @@
 """Formulas for a body swept through resonance: recurrences of series, and phases without cancellation.
 
-Such a body rotates at a linearly growing rate about its axis, and at a constant rate about an axis normal to this axis.
+Such a body rotates at a linearly growing rate Omega about its axis, and at a constant rate W about an axis normal to
+this axis. Resonance is the time at which Omega is zero. The phase is the integral of ``sqrt(Omega^2 + W^2)``.
 """
 
 from sympy import Expr, Matrix, Rational, S, Symbol, sqrt
@@ -17,7 +18,7 @@ V, X, R, KAPPA = Symbol("v"), Symbol("x"), Symbol("r"), Symbol("kappa")
 
 
 def far(d: Derivation) -> None:
-    """Add steps to the derivation ``d`` about the coefficients of the series far from resonance.
+    """Add steps to the derivation ``d``: recurrences of the series for times at which Omega is far from zero.
 
     These series describe a vector that is fixed in space, and the small angle of rotation about this vector.
     """
@@ -119,7 +120,7 @@ def _small_angle(d: Derivation) -> None:
 
 
 def near(d: Derivation) -> None:
-    """Add steps to the derivation ``d`` about the Taylor series of the attitude near resonance, and its symmetry."""
+    """Add steps to the derivation ``d``: Taylor series of the attitude for times near resonance, and their symmetry."""
     d.section("Near resonance")
     place, step = Symbol("X"), Symbol("u")
     names = r"\alpha", r"\beta"
@@ -162,7 +163,7 @@ def near(d: Derivation) -> None:
 
 
 def weak(d: Derivation) -> None:
-    """Add steps to the derivation ``d`` about the phase under a weak torque, a power series in time."""
+    """Add steps to the derivation ``d``: under a weak torque the phase, an angle in rad, is a power series in time."""
     d.section("A weak torque")
     h, c = Symbol("h"), Symbol("c")
     f = sqrt(1 + 2 * c * h + h**2)
@@ -237,10 +238,9 @@ def weak(d: Derivation) -> None:
 
 
 def _by_legendre(c: Expr) -> dict[Symbol, Expr]:
-    """Return three neighbouring coefficients, a_{k+1}, a_k, a_{k-1}, of the power series of ``sqrt(1 + 2 c h + h^2)``
-    in h.
+    """Return a map from a_{k+1}, a_k, a_{k-1} to their formulas in the Legendre polynomials P_k(-c) and P_{k-1}(-c).
 
-    They are formulas in the Legendre polynomials P_k(-c) and P_{k-1}(-c).
+    These are coefficients of the power series of ``sqrt(1 + 2 c h + h^2)`` in h.
     """
     # P_k and P_{k-1} at -c
     above, below = Symbol("P_{k}"), Symbol("P_{k-1}")
@@ -251,7 +251,10 @@ def _by_legendre(c: Expr) -> dict[Symbol, Expr]:
 
 
 def between(d: Derivation) -> None:
-    """Add steps to the derivation ``d`` about the phase between two times, a sum of positive terms."""
+    """Add steps to the derivation ``d``: a formula for the growth of the phase, without cancellation of digits.
+
+    The growth between two times is a sum of two positive terms.
+    """
     d.section("Between two times")
     omega, start, speed, there, across = (Symbol(name) for name in ("Omega", "Omega_0", "S", "S_0", "W"))
     together = there * speed + start * omega

@@ -27,13 +27,13 @@ INDICES = "it is in index notation, which is not decided; write one component, s
 INDEX_CONDITION = "it is a condition on the quantities with indices in it, and no identity"
 
 ROTATION = re.compile(r"[RCQ](_\w+)?")
-"""The names of matrices that are rotations in most books."""
+"""Pattern of the names that most books use for a rotation matrix."""
 
 MASS_OR_INERTIA = re.compile(r"[mM](_?\w)?|[IJ]_\w+|rho")
-"""Names in a formula for a tensor of inertia."""
+"""Pattern of the names of masses, moments of inertia and densities, as in a formula for a tensor of inertia."""
 
 ARRAY = re.compile(r"[A-Zpq](_?[0-9])?")
-"""Names that are often matrices or quaternions."""
+"""Pattern of the names that are often those of matrices or quaternions."""
 
 
 def verdict_on_equation(claim: Claim, notation: Notation, repair: bool, plain: bool) -> Verdict:
@@ -199,8 +199,9 @@ def _has_indices(claim: Claim) -> bool:
 def for_numbers(reading: Reading, part: tuple[Claim, Verdict], source: str) -> Verdict | None:
     """Return the verdict "conditional" on an equation that is false for Pauli's matrices and true for numbers sigma_x.
 
-    ``part`` is the equation as a claim about matrices, and its verdict. Return None for other equations, and for those
-    without a product or power of a sum: ``σ_x σ_y = σ_y σ_x`` would say nothing about numbers.
+    ``part`` is the equation as a claim about matrices, and its verdict. Return None for other equations, and for
+    equations in which no sum is multiplied or raised to a power: ``σ_x σ_y = σ_y σ_x`` would be trivial for numbers, so
+    its author means matrices.
     """
     claim, verdict = part
     link = reading.lines[0].links[0]

@@ -133,10 +133,11 @@ def with_all_conditions(verdict: Verdict, conditions: Sequence[Sequence[str]], b
 
 
 def _as_named_chain(line: Sequence[Claim], verdicts: Sequence[Verdict], notation: Notation) -> list[Verdict]:
-    """Return the verdicts on a chain ``name = a = b``.
+    """Return ``verdicts``, those on the equations of a chain ``name = a = b``, with other verdicts on ``a = b``.
 
-    If ``a = b`` is no identity, the verdict on ``name = b`` may replace the verdict on it; or "definition" may, if b is
-    a number and ``a = b`` holds for some values of its letters only.
+    If ``a = b`` is no identity and each side has letters that the other side lacks, its verdict is replaced by the one
+    on ``name = b``. If b is a number and ``a = b`` is false in general but may hold for some values of its letters, as
+    sin x = 1/2 does, the verdict becomes "definition". In a chain that does not begin with a name, nothing is replaced.
     """
     named = named_formula(line[0]) if len(line) > 1 else None
     if named is None or line[0].relation is None or line[0].relation[1] != named.side:

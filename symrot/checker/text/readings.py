@@ -126,7 +126,10 @@ def _is_false_by_context(verdict: Verdict, stated: Context) -> bool:
 
 
 def _renames_a_rate(verdict: Verdict) -> bool:
-    """Return whether a claim is recognised only with a name such as psi_prime for the rate of another angle, dphi."""
+    """Return whether the claim is recognised only with its name x_prime as the rate of an angle in a known formula.
+
+    An example is psi_prime in place of dphi; a reading of the text in which ψ' is a rate is then more likely.
+    """
     return all(
         any(own.startswith("d") and other.endswith("_prime") for own, other in known.mapping.items())
         for known in verdict.recognised_as

@@ -63,9 +63,9 @@ def as_inequality(repair: Repair, claim: Claim, sign: str, notation: Notation) -
 
 
 def as_typed(source: str, written: Sequence[tuple[Node, Node]]) -> str:
-    """Return the text of an equation with the short forms that the claim's text has for some of its formulas.
+    """Return the text ``source`` of an equation with the short forms that the claim's text has for some formulas.
 
-    ``written`` are pairs (formula, short form).
+    ``written`` has pairs (formula, short form).
     """
     relation = relation_of(source) if written else None
     if relation is None:
@@ -75,15 +75,20 @@ def as_typed(source: str, written: Sequence[tuple[Node, Node]]) -> str:
 
 
 def _keeps(repair: Repair, written: Sequence[tuple[Node, Node]]) -> bool:
-    """Return whether a repair still contains each formula of ``written``, pairs (formula, short form in the text)."""
+    """Return whether a repair still contains each formula that the claim's text writes in a short form.
+
+    ``written`` has pairs (formula, short form). The answer is True if it is empty, or if the repair is no equation.
+    """
     relation = relation_of(repair.text) if written else None
     nodes = [node for side in relation[1:] for _, node in walk(side)] if relation else []
     return not nodes or all(formula in nodes for formula, _ in written)
 
 
 def _with_inverse(source: str, place: str, typed: str) -> str:
-    """Return the equation ``source`` with ``q**(-1)`` for q*/|q|^2 on its side ``place``, if ``typed`` writes a
-    power.
+    """Return the equation ``source`` with ``q**(-1)`` in place of q*/|q|^2, if this inverse is its side ``place``.
+
+    ``place`` is "left" or "right"; ``typed`` is the claim's text. Return ``source`` unchanged if the side is no
+    inverse, or if the text has no power -1.
     """
     relation = relation_of(source)
     if relation is None or relation[0] != "==":

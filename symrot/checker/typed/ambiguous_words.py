@@ -163,7 +163,9 @@ class WordReader:
 
 
 def _beside_quantities(tokens: Sequence[Token]) -> Iterator[tuple[str, str]]:
-    """Yield (I, Ic) for each word after ``I =`` in one equation: in ``I = Ic + m d^2`` the quantity I is no factor."""
+    """Yield pairs (quantity, name): a quantity alone on the left side of an equation, and each name after its sign =.
+    For ``I = Ic + m d^2`` they are (I, Ic), (I, m) and (I, d): Ic is then probably one name and no product I*c.
+    """
     quantity = ""
     for before, token, after in zip((None, *tokens), tokens, (*tokens[1:], tokens[-1]), strict=False):
         if before is None or token.breaks or token.text in (";", ","):

@@ -11,10 +11,13 @@ from math import factorial
 __all__ = ["with_plain_signs"]
 
 _THOUSANDS = re.compile(r"(?<![\w.,(\[])\d{1,3}(?:,\d{3})+(?![\d,])(?![^()\[\]]*[)\]])")
-"""A number such as 1,500 outside of brackets, in which a comma separates arguments."""
+"""Pattern of a number with commas between thousands, such as 1,500, outside of brackets.
+
+Inside brackets, a comma separates arguments, as in ``atan2(1,500)``.
+"""
 
 _ROUNDED = re.compile(r"(?:≈|\\approx\b)(?=\s*[-−]?\s*\d+(?:\.\d+|\s*(?:°|\^\{?\\circ|[a-zA-Z\\])))")
-"""The sign ≈ before a decimal number or a number with a unit, which is a rounded value."""
+"""Pattern of the sign ≈ before a decimal number or a number with a unit, which is a rounded value."""
 
 _FUNCTION = re.compile(r"(?<![A-Za-z\\_])(?:sin|cos|tan|sinh|cosh|tanh|sqrt|exp|ln|log|asin|acos|atan)(?![A-Za-z])")
 _WHERE = re.compile(
@@ -23,13 +26,13 @@ _WHERE = re.compile(
 _BETWEEN = re.compile(r"\s(?:\\(?:text|mathrm|textrm)\{\s*and\s*\}|and)\s")
 _RAISED = re.compile("[⁰¹²³⁴⁵⁶⁷⁸⁹⁻]+")
 _FRACTION = re.compile("[½⅓⅔¼¾⅕⅖⅗⅘⅙⅚⅛⅜⅝⅞]")
-"""Raised digits and fractions that are one character each, which LaTeX writes with commands."""
+"""Patterns of raised digits (``_RAISED``) and of fractions such as ½, which LaTeX writes with commands."""
 
 _SUBSCRIPT = re.compile(r"_\{(\w+)\}")
 
 
 _FACTORIAL = re.compile(r"(?<![\w.])([12]?\d|30)!(?![=!])")
-"""The factorial of a number up to 30."""
+"""Pattern of a factorial such as ``10!``; its group is the number, 30 at most."""
 
 
 def with_plain_signs(source: str) -> str:

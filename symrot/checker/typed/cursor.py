@@ -27,11 +27,11 @@ MASS = "dm"
 """The element of mass of a body."""
 
 FACTOR_MARKS = ("(", "[", "√")
-"""Marks with which a factor without a product sign before it may start."""
+"""Characters that may start a factor directly after another factor, without a product sign: ``2(a + b)``, ``2√x``."""
 
 VECTOR_FUNCTIONS = ("cross", "vee", "Matrix")
 USUAL_VECTORS = frozenset([*"abcdeuvwrpqnsFLHMNRT", "omega", "Omega", "alpha", "tau", "epsilon", "eps", "sigma"])
-"""Names between which a letter x with blanks around it is a product sign, unless x is a name of the text."""
+"""Names that books usually give to vectors; between two of them, as in ``a x b``, a letter x may be the sign ×."""
 
 SHARED = ("R", "T", "N", "s", "sigma", "epsilon", "eps")
 """Names of vectors that are as often numbers: a radius, a tension, a normal force, a length."""
@@ -55,7 +55,10 @@ class Doubt:
 
 @dataclass(frozen=True)
 class Vocabulary:
-    """The names of a text that have a meaning: declared ones, names without a bracket after them, and vectors."""
+    """What a text tells about its names: which are declared, which stand without a bracket, and which are vectors.
+
+    A name that stands somewhere without a bracket after it is probably not the name of a function.
+    """
 
     symbols: frozenset[str] = frozenset()  # declared
     functions: frozenset[str] = frozenset()  # declared

@@ -33,7 +33,10 @@ def lines_of(tokens: Sequence[Token]) -> Iterator[list[Token]]:
 
 
 def _is_comma_between(line: Sequence[Token], token: Token, tokens: Sequence[Token]) -> bool:
-    """Return whether ``token`` is a comma between two equations, as in ``a = b, c = d``; ``line`` is ``a = b``."""
+    """Return whether ``token`` is a comma between two equations, as in ``a = b, c = d``.
+
+    ``line`` has the tokens of the equation before the comma, ``a = b``; ``tokens`` are those of the whole text.
+    """
     if token.text != "," or not any(piece.text in SIGNS for piece in line):
         return False
     after = tokens[list(tokens).index(token) + 1 :]

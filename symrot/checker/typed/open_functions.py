@@ -68,8 +68,10 @@ class OpenFunctionsPart(Cursor):
         return Node("neg", None, (value,), value.span) if negative else value
 
     def open_call(self, function: str, token: Token, exponent: Node | None) -> tuple[Node, Node | None]:
-        """Parse the argument in ``sin 2x``; return the call sin(2*x) and its exponent: ``exponent``, 2 in ``sin^2 x``,
-        or None.
+        """Parse the argument of a function, as in ``sin 2x``; return the call sin(2*x) and its exponent or None.
+
+        ``exponent`` is the one before the argument, 2 in ``sin^2 x``. An exponent after the argument, in ``sin x^2``
+        as (sin x)^2, multiplies it.
         """
         self.plain = True
         first = self.token()
@@ -217,10 +219,10 @@ class OpenFunctionsPart(Cursor):
         return replace(differentiated(operand, variable, order), span=self.span(token.start))
 
     def derivative_by_time(self, token: Token, name: str, order: int, length: int) -> Node | None:
-        """Return ``diff(x(t), t)`` for the name x, or the derivative of the next factor for an empty name.
+        """Return the derivative by t of the function ``name``, or of the factor after ``d/dt`` if ``name`` is empty.
 
-        None for a quotient of two names, such as ``dx/dt`` in SymPy syntax. ``length`` is the number of tokens of the
-        derivative after ``token``.
+        ``length`` is the number of tokens of ``dx/dt`` or ``d/dt`` after its first one, ``token``. Return None if the
+        name is t, pi or a declared symbol, and for ``dx/dt`` in SymPy syntax, where it is a quotient of two names.
         """
         is_quotient = self.as_sympy and (token.text != "d" if name else order > 1)
         if is_quotient or name in ("t", "pi") or name in self.vocabulary.symbols:
@@ -234,9 +236,10 @@ class OpenFunctionsPart(Cursor):
         return self.derived(token, operand, TIME, order)
 
     def derivative_by(self, token: Token, name: str, variable: Node, order: int, length: int) -> Node | None:
-        """Return the derivative of a name, or of the next factor for an empty name, by ``variable``, x or x'.
+        """Return the derivative of ``name``, or of the factor after ``d/dx`` if ``name`` is empty, by ``variable``.
 
-        None if no factor follows. ``length`` is the number of tokens of the derivative after ``token``.
+        The variable is a symbol x or a rate x'. ``length`` is the number of tokens of ``dy/dx`` or ``d/dx`` after its
+        first one, ``token``. Return None if ``name`` is empty and no name, bracket, bar or root follows.
         """
         after = self.token(length)
         if not name and not (after.text in ("(", "|", "√") or after.kind == "name"):

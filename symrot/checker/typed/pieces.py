@@ -174,9 +174,9 @@ class PiecesPart(OpenFunctionsPart):
         return Node("call", name, (node, *arguments), self.span(start))
 
     def rate(self, node: Node, mark: Token, start: int) -> Node:
-        """Return ``diff(x(t), t)`` for ``x'``, or the name ``x_prime`` if ``flips`` ask for this less usual meaning.
+        """Return ``diff(x(t), t)`` for ``x'``, or the name ``x_prime`` in a reading with the prime as part of the name.
 
-        ``node`` is the name, ``mark`` the primes or dots after it.
+        ``node`` is the formula x, ``mark`` the token of the primes or dots after x.
         """
         self.plain = True
         order = int(mark.text) if mark.kind == "dots" else len(mark.text)
@@ -406,4 +406,4 @@ class PiecesPart(OpenFunctionsPart):
         "number": OpenFunctionsPart.numeral, "name": name, "fraction": fraction, "(": bracket, "[": square_bracket,
         "|": absolute, "‖": absolute, "∫": integral, "√": OpenFunctionsPart.root,
     }  # fmt: skip
-    """Kind of a token, or the mark -> the function that reads a piece that starts with it."""
+    """Text of a mark such as "(", or kind of another token -> the method that parses what starts with this token."""

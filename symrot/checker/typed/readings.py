@@ -16,7 +16,7 @@ __all__ = ["Chain", "Declared", "Reading", "Relation", "distinct_readings", "eac
 
 MOST_READINGS = 6
 MOST_DOUBTS = 40
-"""The largest number of readings of one text, and of ambiguous pieces of a text that are examined."""
+"""Largest number of readings of one text that are decided, and of its ambiguous pieces whose other meaning is tried."""
 
 Relation = tuple[str, Node, Node]
 
@@ -99,10 +99,11 @@ class Reading:
 
 
 def each_reading(read: Callable[[Collection[tuple[str, int]]], Reading]) -> Iterator[Reading]:
-    """Yield the usual reading ``read(())`` of a text, then ``read(flips)`` for other sets of keys ``flips``.
+    """Yield the usual reading of a text, ``read(())``, and then readings ``read(flips)`` with less usual meanings.
 
-    These are the keys of all pieces with one kind of ambiguity, and single keys. Sets for which ``read`` raises
-    InputError are left out.
+    ``flips`` are the keys (kind of ambiguity, position) of the ambiguous pieces that get their less usual meaning: all
+    pieces of one kind or, for kinds other than "word" and "name", a single piece. Readings for which ``read(flips)``
+    raises InputError are left out.
     """
     usual = read(())
     yield usual

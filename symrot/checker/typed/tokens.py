@@ -19,7 +19,7 @@ LONGEST_NUMBER = 200
 """The largest number of characters in a number, raised or not; Python converts no number of more than 4300 digits."""
 
 SIGNS = ("==", "=", "!=", ">=", "<=", ">", "<")
-"""The signs of relations."""
+"""The signs between the two sides of an equation or inequality."""
 
 
 class Token(NamedTuple):
@@ -95,13 +95,12 @@ _NAME = re.compile(r"[A-Za-z][A-Za-z0-9_]*", re.ASCII)
 _MARK = re.compile(r"\*\*|==|!=|>=|<=|:=|[-+*/(),\[\].=<>^;|√×·°⊗∘‖±∓†∫]")
 _SUBSCRIPT = re.compile(rf"_(?:[A-Za-z0-9]+|[{_GREEK}±∓])|[{''.join(_LOWERED)}]+")
 _PRIMED = re.compile(rf"'+(?=[{''.join(_LOWERED)}])")
-"""Primes between a letter and its subscript."""
-
+"""Pattern of the primes between a letter and its lowered subscript, as in ``ω'₁``."""
 _OF_MOMENTUM = re.compile(rf"[φϕθψ](?![{''.join(_OVER)}_{''.join(_LOWERED)}0-9(])")
-"""The angle after the p of its momentum, ``pφ``."""
+"""Pattern of an angle after a p, such as φ in ``pφ``: together they name the momentum that belongs to the angle."""
 
 _AXIS_PAIR = re.compile("[IJP]_[xyz]'[xyz]'")
-"""A product of inertia about axes with a prime."""
+"""Pattern of a product of inertia about two axes with primes, such as ``I_x'y'``."""
 
 _COMPONENT = re.compile(r"[0-9]+|(?:xx|yy|zz|xy|yz|zx|xz|yx|zy|[xyz])(?![A-Za-z0-9])", re.ASCII)
 _SMALL_FRACTION = re.compile(r"(?<![\w)\]])([⁰¹²³⁴⁵⁶⁷⁸⁹]+)/([₀₁₂₃₄₅₆₇₈₉]+)")
@@ -159,8 +158,9 @@ def _written_out(source: str) -> tuple[str, list[int]]:
 
 
 def _accents_after_letters(text: str, places: list[int]) -> tuple[str, list[int]]:
-    """Return a text with dots and hats after their letters, and the positions of its characters in the source,
-    ``places``.
+    """Return a text with each dot or hat moved behind its letter, and the position of each character in the source.
+
+    ``places`` are these positions for the given ``text``.
     """
     # text that was copied from a PDF has them before the letters
     text, places = _without_blanks_before_dots(text, places)
@@ -253,7 +253,10 @@ def _differential(text: str, at: int) -> Iterator[tuple[str, str, int]]:
 
 
 def _lower_limit(text: str, at: int) -> Iterator[tuple[str, str, int]]:
-    """Yield (kind, text, end) of the mark ``_`` of an integral's lower limit; for ``∫₀`` also of the limit 0."""
+    """Yield (kind, text, end) of the tokens at the start of an integral's lower limit; end is the position after each.
+
+    They are the mark ``_`` and, if the limit is lowered as in ``∫₀``, the limit itself: a number or a name.
+    """
     lowered = re.compile(f"[{''.join(_LOWERED)}]+").match(text, at)
     yield "mark", "_", at if lowered else at + 1
     if lowered is not None:
@@ -298,8 +301,10 @@ def _written(digits: str) -> str:
 
 
 def _letter(text: str, at: int, word: str) -> Iterator[tuple[str, str, int]]:
-    """Yield (kind, text, end) of the tokens of a letter ω: the name omega, its ``word``, with a subscript, and its
-    dots.
+    """Yield (kind, text, end) of the tokens of one letter and its marks: the name, then primes, a hat or tilde, dots.
+
+    ``word`` is the name of the letter, omega for ω; a subscript and a bar are added to it, as in omega_1. The end of a
+    token is the position after the letter and all its marks.
     """
     stop = at + 1
     dots = 0

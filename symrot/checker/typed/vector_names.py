@@ -36,8 +36,8 @@ def _is_cross(before: Token | None, token: Token, after: Token, factor: Token, v
 def crossed(tokens: Sequence[Token], vectors: Collection[str], flips: Collection[tuple[str, int]]) -> Iterator[str]:
     """Yield the names next to the sign of a cross product, ``×`` or a letter x: they are vectors.
 
-    In a text with rates, yield also names in ``cross(a, b)`` and ``skew(a)``. ``flips`` has the keys of the letters x
-    that are names in this reading.
+    In a text with rates, yield also names in ``cross(a, b)`` and ``skew(a)``. A letter x with a key ("cross", position)
+    in ``flips`` is a name in this reading of the text, and no sign.
     """
     alone = set(names_alone(tokens, vectors))
     padded = [*tokens, tokens[-1]]

@@ -71,8 +71,10 @@ ENGLISH = frozenset(
 """Words between formulas, which are no factors."""
 
 SCALARS = frozenset("bckmn")
+"""First letters of words of two letters that are usually products with x, y or z, such as ``kx``."""
+
 VECTORS = frozenset("IJvwFLMHTRNPeuprfgst")
-"""Letters that make a word that ends with x, y or z a product, ``kx``, and letters that make it a component, ``Fx``."""
+"""First letters of words of two letters that are components along x, y or z, such as ``Fx``."""
 
 WHOLE_WORDS = frozenset(
     [*GREEK_WORDS, *SINGLE_ARGUMENT, *ALIASES, "pi", "diff", "KE", "PE", "TE", "dt", "dm", "id", *UNITS]
@@ -165,19 +167,22 @@ class Shorthand(NamedTuple):
 
 
 FEWEST_OF_LETTERS = 2
-"""The smallest number of angles with a Latin letter that have both a cosine and a sine, ``ca`` and ``sa``, at which
-such words are read as short forms."""
+"""Number of angles that must occur in both a cosine and a sine, as in ``ca`` and ``sa``, in a text with short forms.
+
+In a text with fewer of these angles, ``ca`` is probably c times a.
+"""
 
 ANGLES = {"a": "alpha", "b": "beta", "g": "gamma", "t": "theta", "p": "phi", "x": "x", "y": "y", "z": "z"}
-"""Latin letter of an angle in a short form -> the angle."""
+"""Second letter of a short form such as ``ca`` for cos(alpha) -> the name of the angle."""
 
 OF_LETTERS = re.compile(f"[cs][{''.join(ANGLES)}]")
-"""A cosine or sine in short form of an angle with a Latin letter, such as a for alpha."""
+"""Pattern of the short form of a cosine or sine, such as ``ca`` for cos(alpha)."""
 
 
 def shorthands_of_letters(tokens: Sequence[Token]) -> list[Shorthand]:
-    """Return the short forms among ``tokens``, ``ca`` for cos(alpha) and ``sb`` for sin(beta), if two angles have
-    both.
+    """Return the short forms among ``tokens``: ``ca`` for cos(alpha) and ``sb`` for sin(beta).
+
+    Return only those of angles with both a cosine and a sine in the text; none if it has fewer than two such angles.
     """
     places = [place for place, token in enumerate(tokens) if token.kind == "name" and OF_LETTERS.fullmatch(token.text)]
     forms = {tokens[place].text for place in places}

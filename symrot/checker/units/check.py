@@ -1,7 +1,7 @@
-"""The check of units: the terms of a sum, and the two sides of an equation, must have the same unit.
+"""The check of units: all terms of a sum, and both sides of an equation, must have the same unit.
 
 Units are stated in the claim, or conventional (:data:`symrot.checker.units.units.CONVENTIONAL_UNITS`), or inferred;
-only a contradiction is an error. A claim that is no identity may then be "false" instead of a "definition".
+only a contradiction is an error. It may make an equation "false" that would otherwise have the verdict "definition".
 """
 
 from collections.abc import Mapping, Sequence

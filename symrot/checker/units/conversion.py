@@ -51,7 +51,7 @@ ONE_PER_SECOND = "with the hertz as one per second, and the radian as 1"
 STANDARD_GRAVITY = "with g for the standard gravity, 9.80665 m/s^2"
 
 ANGULAR = frozenset({"rad", "rev", "rpm", DEGREE})
-"""Units next to which a hertz is one rotation per second."""
+"""Units with an angle in them; in a text with one of them, a hertz is usually one rotation per second."""
 
 ALIASES = {
     "sec": "s", "degrees": DEGREE, "degree": DEGREE, "°": DEGREE, "%": "percent", "Nm": "N m", "μm": "um",
@@ -72,7 +72,7 @@ CERTAIN = frozenset({
 
 _UNIT = "|".join(sorted([*FACTORS, *ALIASES], key=lambda name: (-len(name), name)))
 _POWER = r"(?:(?:\^|\*\*)(?:\(-?\d{1,2}\)|-?\d{1,2}(?!\d))|[²³]|⁻[¹²³]|(?!\s*(?:\^|\*\*)))"
-"""The power of a unit, of at most two digits; a name with another power, such as m^x, is no unit."""
+"""Pattern of the power of a unit, of at most two digits; a name with another power, such as m^x, is no unit."""
 
 _NO_LETTER = r"(?!(?![²³⁻¹])\w|[('])"
 _ONE = rf"(?:{_UNIT}){_NO_LETTER}{_POWER}"
@@ -82,7 +82,10 @@ _VALUE = (
     rf"(?:{_NUMBER}\s*[*·⋅×]\s*)?{_NUMBER}\s*(?:(?:\^|\*\*)\s*(?:\([+-]?\d+\)|[+-]?\d+)|⁻?[⁰¹²³⁴⁵⁶⁷⁸⁹]+)"
     rf"|(?:{_NUMBER}\s*[*·⋅]?\s*)?(?:pi\b|π)(?:\s*/\s*{_NUMBER})?|{_FRACTION}|{_NUMBER}|(?<=\))"
 )
-"""A number: a power such as 3*10^8, a multiple of pi, a fraction, a decimal number; or nothing after a bracket."""
+"""Pattern of a value before a unit: a power such as 3*10^8, a multiple of pi, a fraction or a decimal number.
+
+After a closing bracket the pattern matches an empty text, since the value is in the brackets, as in ``(1 + 2) kg``.
+"""
 
 _MEASURED = re.compile(rf"(?<![\w.^])(?<!\*\*)({_VALUE})(\s*/\s*|[ *·⋅]*)({_ONE}(?:\s*[/*·⋅ ]\s*{_ONE})*)")
 _PIECE = re.compile(rf"(?P<sign>[/*·⋅ ]*)(?P<unit>{_UNIT}){_NO_LETTER}(?P<power>{_POWER})")
@@ -282,8 +285,9 @@ def numeric_end(source: str) -> tuple[str, str]:
 
 
 def unit_beside_letters(source: str) -> str:
-    """Return the first number that surely has a unit, such as "3 m/s^2", in a text with other letters; "" without one.
+    """Return a number that surely has a unit, such as "3 m/s^2", in a text with letters; "" if there is none.
 
+    In ``2 x = 3 m`` the letter m may be a quantity.
     Examples
     --------
     >>> unit_beside_letters("m L^2/12 = 1 kg m^2"), unit_beside_letters("v^2/r = 3 m/s^2")

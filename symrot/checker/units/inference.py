@@ -153,8 +153,10 @@ class UnitInference:
         return bool(self.units) or any(unit not in (None, "rad") for unit in units)
 
     def values_of(self, rows: Rows, node: Node) -> Rows:
-        """Return the dimensions of a matrix of numbers: unknown, because the author may have left out the units, unless
-        all numbers are 0 or 1.
+        """Return the dimensions of the entries of a matrix of numbers, unknown for entries other than zero.
+
+        The author may have left out the units. If all numbers are 0 or 1, ``rows``, the dimensions of pure numbers, are
+        returned unchanged.
         """
         if _is_unit(node):
             return rows  # zeros and ones are pure numbers, but 2 may be 2 kg
@@ -183,7 +185,11 @@ class UnitInference:
         return "dimensionless" if unit == "1" else unit
 
     def same_matrices(self, first: Value, second: Value, words: str) -> Value:
-        """Return the dimensions of two matrices, entry by entry as :meth:`same`; zero may be a matrix of zeros."""
+        """Require that two matrices have the same dimension in each entry, and return these dimensions.
+
+        A contradiction adds the sentence ``words`` to ``faults``, as in :meth:`same`. A number 0 fits every matrix.
+        Raise Unreadable for two different shapes, and for a matrix and a scalar other than 0.
+        """
         shapes = [shape_of(value) for value in (first, second)]
         if None in shapes:
             zero = first if shapes[0] is None else second

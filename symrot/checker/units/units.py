@@ -16,7 +16,7 @@ __all__ = [
 ]  # fmt: skip
 
 Dimension = Mapping[str, Fraction]
-"""Nonzero exponents of bases, written ``"[m]"``, and of symbols of unknown unit, by name."""
+"""Base unit such as "[m]", or name of a symbol with an unknown unit -> its nonzero exponent in a product of units."""
 
 NOTHING: Dimension = {}
 BASES = ("kg", "m", "s", "A", "K", "mol", "cd")
@@ -54,10 +54,10 @@ CONVENTIONAL_UNITS = (
     (r"I(_?[0-3xyz]|_?([1-3]{2}|[xyz]{2}))?", "kg m^2"),
     (r"tau(_?[xyz1-3])?", "N m"),
 )
-"""Patterns of names that nearly every book uses for one quantity, with its unit.
+"""Pairs (pattern of names, unit): nearly every book uses these names for one quantity, in this unit.
 
-All other units are inferred. Single letters of the table count only in a claim that has a stated unit or a longer name
-of the table other than an angle; other claims may be pure mathematics.
+All other units are inferred. A name of one letter, such as t, gets its unit only in a claim about physical quantities:
+one with a stated unit, or with a longer name from the table whose unit is not rad.
 """
 
 

@@ -1,4 +1,4 @@
-"""Angles as rational combinations of atoms (symbols or other factors that are not numbers).
+"""Angles as linear combinations of atoms with rational coefficients; atoms are symbols, or products such as ``x*y``.
 
 ``2*phi - psi/2 + pi/3`` has the linear form ``{phi: 2, psi: -1/2}`` plus ``1/3`` of pi. Each atom has a base angle, of
 which all its angles are whole multiples: theta/6 if theta/2 and theta/3 occur (``docs/exact_decisions.md``, section 4).
@@ -15,14 +15,18 @@ from sympy import Expr, Rational, chebyshevt_poly, chebyshevu_poly, cos, pi, sin
 from symrot.errors import InputError
 
 PARTS = 24
-"""Constant angles are counted in pi/24: their sines and cosines lie in Q(sqrt 2, sqrt 3, cos(pi/8))."""
+"""Angles that are multiples of pi/24 have sines and cosines in Q(sqrt 2, sqrt 3, cos(pi/8)), so they need no atom."""
 
 
 @dataclass(frozen=True)
 class LinearForm:
-    """An angle in rad as ``sum(coefficient * atom) + half_turns * pi``; an atom is a symbol or another factor."""
+    """An angle in rad as ``sum(coefficient * atom) + half_turns * pi``: a linear combination of atoms.
 
-    terms: tuple[tuple[Expr, Fraction], ...]  # pairs (atom, coefficient); no atom is a number
+    An atom is a symbol or another expression without a rational coefficient: ``2*phi + 3*x*y`` has the atoms ``phi``
+    and ``x*y``.
+    """
+
+    terms: tuple[tuple[Expr, Fraction], ...]  # pairs (atom, coefficient); no atom is rational
     # a multiple of 1/24; a constant angle with another denominator is a term with the atom ``pi``
     half_turns: Fraction
 

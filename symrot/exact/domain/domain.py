@@ -15,7 +15,8 @@ __all__ = ["divisors", "free_angles", "is_dense", "radicands", "signs", "split_r
 def divisors(ring: FormulaRing, granted: Container[int] = ()) -> list[tuple[Expr, Expr]]:
     """Return pairs (divisor as the formula writes it, a factor of the divisor) for all divisors in a ring's formulas.
 
-    No factor may be zero. Factors with an index in ``granted`` are left out.
+    The formulas are defined only where no factor is zero. Factors with an index in ``granted`` are omitted, and
+    factors that SymPy knows not to be zero.
     """
     roots = {place: root for root, place in ring.roots.items()}
     pairs: list[tuple[Expr, Expr]] = []
@@ -47,9 +48,9 @@ def radicands(ring: FormulaRing) -> list[Expr]:
 
 
 def split_radicands(ring: FormulaRing) -> list[Expr]:
-    """Return the formulas P, of unknown sign, of square roots ``sqrt(P f^2)`` that a proof replaces by ``|f| sqrt(P)``.
+    """Return the formulas P of those square roots ``sqrt(P f^2)`` that the ring reads as ``|f| sqrt(P)``.
 
-    Only those P are returned that may be negative where f = 0.
+    Proofs in the ring hold only where P >= 0. A P that SymPy knows to be positive is omitted.
     """
     # where f = 0 and P = -1, sqrt(P f^2) is 0 but |f| sqrt(P) is not real: the proof does not cover such a point
     loose = [root for radical in ring.radicals.values() if radical.loose for root in radical.roots]

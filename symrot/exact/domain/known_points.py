@@ -19,7 +19,7 @@ from symrot.exact.intervals import enclosure
 __all__ = ["holds", "known_point"]
 
 STARTS = 160
-"""Number of random points from which the search starts."""
+"""Number of random points from each of which a search starts for a point that satisfies all conditions."""
 
 MOST_LOOKS = 60_000
 """Number of evaluations after which a search gives up."""

@@ -44,9 +44,10 @@ _NEEDS: dict[type, Callable[..., list[tuple[Expr, str]]]] = {
     sympy.sign: lambda u: [(u, "!= 0")],
     sympy.atan2: lambda y, x: [(x**2 + y**2, "!= 0")],
 }
-"""Function -> the needs of its arguments. Other functions of :data:`symrot.exact.intervals.INTERVAL` have no needs.
+"""Function -> the conditions on its arguments for a real value, as pairs (formula, sign): ``(u, "> 0")`` for log(u).
 
-The function ``sign`` is the derivative of an absolute value, which does not exist at zero."""
+Other functions of :data:`symrot.exact.intervals.INTERVAL` have no conditions. The function ``sign`` is the derivative
+of an absolute value, which does not exist at zero."""
 
 
 def is_leaf(node: Expr) -> bool:

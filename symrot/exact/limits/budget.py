@@ -1,4 +1,4 @@
-"""A budget for one decision: how many formulas it may convert to polynomials before it gives up.
+"""A budget for one decision whether an equation is true: how many formulas may be converted to polynomials.
 
 Nested roots and inverse functions need many conversions. Results are stored only until the decision ends, so the count,
 and with it the verdict, is the same on every machine and for any order of decisions.
@@ -16,10 +16,12 @@ from symrot.exact.ring.ratio import TooLarge
 __all__ = ["MOST_RINGS", "one_decision", "remembered", "spend_ring"]
 
 MOST_RINGS = 2000
-"""Largest number of conversions in one decision, which take seconds; claims of the random tests need at most 400."""
+"""Largest number of polynomial rings that are built, and formulas converted to them, to decide one equation.
+
+They take seconds; claims of the random tests need at most 400."""
 
 OPERATIONS_OF_RING = 500
-"""Operations of one conversion, besides those that depend on the size of the formulas."""
+"""Number of operations that one new polynomial ring costs, besides those that depend on the size of its formulas."""
 
 
 @dataclass
@@ -35,9 +37,9 @@ _current: ContextVar[_Budget | None] = ContextVar("budget of the decision", defa
 
 @contextmanager
 def one_decision() -> Iterator[None]:
-    """Return a context (``with one_decision():``) in which conversions of formulas count against one budget.
+    """Return a context (``with one_decision():``) for the decision of one equation, with one budget of conversions.
 
-    A decision inside another shares its budget.
+    A context inside another one shares the budget of the outer one.
     """
     if _current.get() is not None:
         yield
@@ -50,9 +52,9 @@ def one_decision() -> Iterator[None]:
 
 
 def remembered(key: Hashable, compute: Callable[[], Any]) -> Any:
-    """Return ``compute()``; within one decision, ``compute`` is called once for each ``key``, and its result is stored.
+    """Return ``compute()``; in a context :func:`one_decision` the result is stored and computed once for each ``key``.
 
-    Outside a decision it is called every time.
+    Outside such a context, ``compute`` is called every time.
     """
     budget = _current.get()
     if budget is None:
@@ -63,12 +65,17 @@ def remembered(key: Hashable, compute: Callable[[], Any]) -> Any:
 
 
 def spend_ring() -> None:
-    """Count one more conversion of a formula to polynomials; outside a decision nothing is counted.
+    """Count one more polynomial ring against the budget of the context :func:`one_decision`, if there is one.
+
+    The operations that building the ring takes count against the budget of the claim, if there is one
+    (:func:`symrot.exact.limits.operations.one_claim`).
 
     Raises
     ------
     TooLarge
-        If the budget of the decision is exhausted.
+        If the budget of the context is exhausted.
+    OutOfOperations
+        If the budget of the claim is exhausted.
     """
     spend(OPERATIONS_OF_RING)
     budget = _current.get()

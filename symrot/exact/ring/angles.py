@@ -19,7 +19,7 @@ from symrot.exact.ring.ratio import Ratio, Ratios, TooLarge
 __all__ = ["Angles"]
 
 MOST_MULTIPLES = 240
-"""Largest multiple of a base angle."""
+"""Largest n for which the sine and cosine of n times a base angle are expanded; an eighth of it for fractions of pi."""
 
 MOST_TERMS = 4096
 """Largest number of terms in the expanded sine or cosine of a sum of base angles; twelve angles give 2048."""

@@ -23,7 +23,7 @@ MOST_BITS_FACTORED = 64
 """A number with more bits is not factored into primes."""
 
 MOST_TERMS = 60
-"""Largest number of terms of an argument that is factored."""
+"""An argument of a logarithm whose numerator or denominator has more terms is not factored."""
 
 
 @dataclass(frozen=True)

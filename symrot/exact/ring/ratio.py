@@ -1,7 +1,8 @@
 """Fractions of polynomials whose denominators are stored as products of factors, each factor with an exponent.
 
 Formulas of rotation divide often by the same few factors, such as ``sin(theta)``; then sums of fractions are sums of
-polynomials. Each factor is stored with the divisor that contains it as the user wrote it, for messages.
+polynomials. For messages, each factor is stored with a divisor that contains the factor, as the user's formula writes
+this divisor.
 """
 
 from collections.abc import Callable, Sequence
@@ -20,9 +21,10 @@ from symrot.exact.limits.operations import spend
 __all__ = ["MOST_PRODUCTS", "Ratio", "Ratios", "TooLarge"]
 
 MOST_PRODUCTS = 1_000_000
-"""Largest number of products of two terms for one problem: seconds of work, counted, so that all machines agree.
+"""Largest number of products of two terms in one polynomial ring, which take seconds.
 
-The claims of the four textbooks and courses need at most 27 000."""
+A count, unlike a time, ends at the same term on every machine. The claims of the four textbooks and courses need at
+most 27 000."""
 
 
 class TooLarge(InputError):

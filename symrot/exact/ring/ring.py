@@ -235,7 +235,7 @@ class FormulaRing:
         return radicand
 
     def _dependences(self) -> dict[Root, Dependence]:
-        """Return the square roots that are products of other roots, with these products: sqrt(a*b): sqrt(a)*sqrt(b)."""
+        """Return a map from square roots to the equal products of other roots: from sqrt(a*b) to sqrt(a)*sqrt(b)."""
         places = {root: n for root, n in self.roots.items() if root.index == 2 and not root.power_expression.is_number}
         plain = [root for root in places if not isinstance(root.expression, Abs)]
         if not plain or len(places) < 2:
@@ -243,7 +243,10 @@ class FormulaRing:
         return dependences({root: self._polynomial(root) for root in places}, self.generators)
 
     def _take_fine_constants(self) -> int:
-        """Return the even N of the variable 2 cos(pi/N), which angles such as pi/7 need; 0 if no angle needs one."""
+        """Return N if the ring needs a variable for the constant 2 cos(pi/N), else 0; delete pi from ``bases`` then.
+
+        The sines and cosines of all constant angles, such as 3 pi/7, are polynomials in 2 cos(pi/14), with N = 14.
+        """
         # no such number for multiples of pi/24, which have square roots as sines and cosines, or if N is too large
         if pi not in self.bases or not cyclotomic.needs_cyclotomic_field(self.bases[pi].denominator):
             return 0
@@ -262,7 +265,7 @@ class FormulaRing:
     def _relate(self, domain: Any) -> Relations | None:
         """Build the ring over ``domain``, the integers or the rationals; return the relations of its variables.
 
-        None: ``domain`` is the integers, but a relation contains fractions.
+        The result is None if ``domain`` is the integers, but a relation contains fractions.
         """
         self.ring = PolyRing([f"x{number}" for number in range(len(self.generators))], domain, lex)
         self.relations = Relations()
@@ -302,9 +305,10 @@ class FormulaRing:
         return above.quo_ground(below.LC)
 
     def _tangled_numbers(self, rules: Sequence[Rule]) -> dict[int, Number]:
-        """Return a map from variables to the algebraic numbers that they stand for, such as the cube root of 2.
+        """Return a map from indices of variables to the algebraic numbers that they stand for, such as 2^(1/3).
 
-        Empty if no equation between these numbers can be missing among the relations.
+        The relations of these variables may not imply all equations between the numbers. The map is empty if they do,
+        as for square roots of primes, or if the ring contains the imaginary unit.
         """
         known: dict[int, Number] = {}
         if self.fine:

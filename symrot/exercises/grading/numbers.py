@@ -32,7 +32,7 @@ _LATEX = (
     ("²", "^2"), ("³", "^3"),
     (r"√\(", "sqrt("), (r"√(\d+(?:\.\d+)?)", r"sqrt(\1)"),
 )  # fmt: skip
-"""LaTeX and signs of numbers with units -> plain text."""
+"""Pairs (regular expression, replacement), applied in turn, that turn LaTeX, and signs such as ² and π, into ASCII."""
 
 _EXPONENT = re.compile(r"(\d)\s*[*x]\s*10\s*(?:\^|\*\*)\s*\(?([+-]?\d+)\)?")
 _HERTZ = re.compile(r"(?<![A-Za-z])(k|M|)Hz\b")

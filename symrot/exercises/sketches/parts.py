@@ -93,12 +93,18 @@ def around(x: float, y: float, wide: float, high: float, first: float, last: flo
 
 
 def arc(x: float, y: float, wide: float, high: float, first: float, last: float, style: str = USUAL) -> Part:
-    """Return a part of an ellipse; the parameters are explained at :func:`around`."""
+    """Return an arc of the ellipse about (x, y) with the half axes ``wide`` and ``high``.
+
+    It goes from the angle ``first`` to the angle ``last``, degrees, as in :func:`around`.
+    """
     return curve(around(x, y, wide, high, first, last), style)
 
 
 def turn(x: float, y: float, wide: float, high: float, first: float, last: float) -> Part:
-    """Return a curved arrow along an ellipse; the parameters are explained at :func:`around`."""
+    """Return a curved arrow along an arc of an ellipse, with its head at the angle ``last``.
+
+    The parameters are those of :func:`arc`.
+    """
     end, sense = radians(last), 1 if last > first else -1
     tip = x + wide * cos(end), y + high * sin(end)
     # the head begins where the ellipse is about 8 units from the tip, so that it lies along the curve

@@ -33,7 +33,7 @@ def _contact() -> Expr:
 
 
 def _can_be_built(values: Mapping[Symbol, Expr]) -> bool:
-    """Return whether the planets between sun and ring have a whole number of teeth, half of the difference."""
+    """Return whether planets fit between sun and ring: their number of teeth, (Z_R - Z_S)/2, is whole and positive."""
     teeth = values[Z_R] - values[Z_S]
     return bool(teeth > 0 and teeth % 2 == 0)
 

@@ -51,7 +51,7 @@ def struck_rod(random: Random) -> Problem:
 
 
 def struck_place(random: Random) -> Problem:
-    """Return a problem that asks for the speed of the point of a rod that is struck."""
+    """Return a problem that asks for the speed, after a blow on a free rod, of the point where the blow acts."""
     speed, formula = J / m + _rate() * d, J * (L**2 + 12 * d**2) / (m * L**2)
     return Problem(
         "The point that is struck",

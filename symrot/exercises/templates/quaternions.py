@@ -17,7 +17,9 @@ UNITS = sorted(
     {tuple(map(mul, sizes, signs)) for sizes in {(5, 5, 5, 5), *permutations((1, 5, 5, 7))}
      for signs in products((-1, 1), repeat=4)}
 )  # fmt: skip
-"""The components, in tenths, of the unit quaternions whose components are all 0.5 or all among 0.1, 0.5, 0.5, 0.7."""
+"""Ten times the components of unit quaternions with short decimals, as tuples of 4 whole numbers.
+
+The quaternions are (0.5, 0.5, 0.5, 0.5) and (0.1, 0.5, 0.5, 0.7) with components in any order and of any signs."""
 
 PARTS = ("scalar part", "component 1", "component 2", "component 3")
 PRODUCT = (

@@ -30,7 +30,7 @@ def determinant(random: Random) -> Problem:
 
 
 def growth_near_lock(random: Random) -> Problem:
-    """Return a problem that asks for the rate of the first angle that a fixed omega causes near gimbal lock."""
+    """Return a problem near gimbal lock that asks for the rate of the first Euler angle, given the angular velocity."""
     sequence, at = random.choice((("ZXZ", 0), ("ZYX", 90)))
     omega = Matrix((omega_1, omega_2, omega_3))
     rate = normal_form((rate_jacobian(sequence).inv() * omega)[0].subs({psi: 0}))

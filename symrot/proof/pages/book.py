@@ -166,8 +166,10 @@ def _mentions(page: Page, pages: Sequence[Page]) -> Iterator[str]:
 
 
 def _words(page: Page) -> Iterator[tuple[str, str, str]]:
-    """Yield (anchor, title, text), such as ``"#step-3"``, for each text on a page that the book's search finds."""
-    # the anchor is empty for the top of the page; titles and texts are Markdown
+    """Yield (anchor, title, text) for each text on a page that the book's search finds.
+
+    An anchor, such as ``"#step-3"``, is empty for the top of the page; titles and texts are Markdown.
+    """
     yield "", page.title, page.about
     for opening in page.opening:
         if isinstance(opening, Figure):

@@ -13,7 +13,7 @@ from symrot.symbols import UNIT
 __all__ = ["equation", "footer", "passage_equations", "remarks", "repetitions", "table_rows", "units"]
 
 MANY = 6
-"""So many steps with one claim and one reason prove one result for many cases."""
+"""Smallest number of steps with equal claim and reason for which a page prints the reason only once."""
 
 
 def equation(step: Step) -> str:
@@ -23,7 +23,10 @@ def equation(step: Step) -> str:
 
 
 def repetitions(page: Page) -> frozenset[int]:
-    """Return the numbers of the steps that repeat the claim and reason of an earlier step, if 6 or more share them."""
+    """Return the numbers of the steps that repeat claim and reason of an earlier step, if at least MANY steps do.
+
+    Formulas and sequences of axes such as ZXZ may differ in claims that count as equal.
+    """
     places: dict[tuple[str, str], list[int]] = {}
     for number, step in enumerate(page.steps, page.first):
         # A page may prove one result for many sequences of angles, or many solids. Claims are compared without formulas
@@ -79,13 +82,13 @@ def units(page: Page) -> str:
 def table_rows(table: Table, number: int) -> Iterator[tuple[str, ...]]:
     """Yield the titles of a table's columns and then its rows, each a tuple of cells in Markdown.
 
-    ``number`` is the number of the last step before the table.
+    If steps prove the rows, each row begins with the numbers of its steps; ``number`` is the number of the page's last
+    step before the table.
     """
     yield ("Steps", *table.head) if table.is_proven else table.head
     for cells, steps in table.rows:
         first, last = number + 1, number + len(steps)
         number = last
-        # proven rows begin with the numbers of their steps
         numbers = f"{first}" if first == last else f"{first}–{last}"
         yield (numbers, *cells) if table.is_proven else cells
 

@@ -27,8 +27,10 @@ Slopes = Mapping[str, float]
 
 
 def places_within(begin: float, times: Floats) -> Floats:
-    """Return arbitrary times for :func:`rests_at_corner`: some from ``begin`` to the last of ``times``, and some to the
-    first, if ``times`` begin before ``begin``.
+    """Return arbitrary times at which :func:`rests_at_corner` examines a motion from ``begin``, s, to all ``times``.
+
+    They are four times from ``begin`` to the smallest of ``times`` and four from ``begin`` to the largest; a smallest
+    or largest time that equals ``begin`` is left out.
     """
     ends = {float(times.min()), float(times.max())} - {begin} if len(times) else set[float]()
     return np.array([begin + part * (end - begin) for end in sorted(ends) for part in PLACES])
@@ -75,16 +77,20 @@ def rests_at_corner(
 
 
 class _Number:
-    """A number with its derivatives by states and parameters, each of which may be BENT, STEEP or EDGE."""
+    """A number with its derivatives by states and parameters; BENT, STEEP or EDGE stands for one that does not exist.
+
+    BENT: difference quotients are bounded, as for ``|omega|`` at 0; STEEP: they are not; EDGE: nearby states have no
+    value.
+    """
 
     def __init__(self, value: float, slopes: Slopes, positive: bool = False, timed: bool = False) -> None:
         # positive: nowhere negative, whatever the states; timed: contains the time, and may be zero by chance
         self.value, self.slopes, self.positive, self.timed = value, slopes, positive, timed
 
     def _zero(self, other: "_Number") -> bool:
-        """Return whether this number is zero in such a way that its product with ``other`` has derivatives.
+        """Return whether this number, times any derivative of ``other``, is zero, even if ``other`` has no derivative.
 
-        ``other`` may then have none: ``omega_1*|omega|`` has derivatives at omega = 0.
+        At omega = 0, for instance, ``omega_1*|omega|`` has the derivative 0, though ``|omega|`` has none.
         """
         if EDGE in other.slopes.values():
             return False

@@ -36,7 +36,7 @@ MOST_AT_ONCE = 6  # functions that may switch at one time
 class Flip(NamedTuple):
     """The switch of one function (sign, abs, ..): its new value, and the derivatives of its time by the m variables.
 
-    ``guard`` holds the derivatives of the function's argument by the seven states.
+    ``guard`` has the derivatives of the function's argument by the seven states.
     """
 
     value: int
@@ -129,22 +129,24 @@ class Crossings:
         return by if first is None else np.asarray(by - np.outer(later - f, rows[first]))
 
     def _at_once(self, interval: Interval, flips: dict[str, Flip], alone: bool) -> Floats | None:
-        """Return the jump of the derivatives, shape (7, m), where several functions switch at the end of an interval.
+        """Return the jump of the derivatives, shape (7, m), where several functions (sign, ..) switch at one time.
 
-        Return None if the jump is that of a single switch: only one function switches, or the functions switch at once
-        for all values of the variables, or the others switched just before, by less than rounding errors.
+        Return None if the jump can be computed as for one function: only one switches; or the times of all switches
+        have the same derivatives by the variables; or the other functions switched in the switch before, which is
+        earlier by no more than rounding errors.
 
-        Raise PropagationError unless each function changes the rates by the same amount before and after the others
-        switch, and leaves the speeds of their guards unchanged: the order of the switches then does not matter.
+        The order of the switches must not matter: raise PropagationError unless the switch of each function changes the
+        rates by the same amount whether or not the others have switched, and does not change the speeds of the
+        arguments of the others.
 
         Parameters
         ----------
         interval : Interval
-            The interval.
+            The interval at whose end the functions switch.
         flips : mapping
-            The switch of each function, by its mode.
+            For each function, named by its mode (the number that replaces it in formulas): its switch.
         alone : bool
-            Whether no other function switches, and none is held at zero.
+            Whether no function other than those in ``flips`` switches, and no argument is held at zero from then on.
         """
         guards, earlier = self.guards, self._last
         between = earlier is not None and abs(interval.end - earlier[1]) <= AT_SWITCH * max(
@@ -184,7 +186,11 @@ class Crossings:
         return np.asarray(jumps.T @ np.array([flips[group[0]].time for group in groups]))
 
     def _note(self, instant: Instant, rows: Mapping[str, Floats], others: Floats | None) -> None:
-        """Add the functions that switch at an instant, with the derivatives of the time, to :attr:`switchings`."""
+        """Append the switches at an instant to :attr:`switchings`, with the derivatives of their time by the variables.
+
+        ``rows`` has these m derivatives for each function, named by its mode; ``others`` are those for any other
+        function, or None if they are not known (then NaN).
+        """
         unknown = np.full(len(self.guards.parameter_slopes.columns), np.nan)
         for (t, label), how in self._changes.items():
             if t == instant.high:
@@ -195,7 +201,7 @@ class Crossings:
 
 
 def jumps_at_end(guards: Guards, interval: Interval) -> NDArray[np.bool_]:
-    """Return for each variable whether the derivatives by it may jump exactly at the end of the motion."""
+    """Return, for each of the m variables, whether the derivatives by it may jump exactly at the end of the motion."""
     jumps = np.zeros(len(guards.parameter_slopes.columns), dtype=np.bool_)
     f = guards.rates(interval, interval.stop, interval.last)
     for guard, on in zip(interval.regime.guards, interval.regime.active(interval.modes), strict=True):
@@ -208,9 +214,10 @@ def jumps_at_end(guards: Guards, interval: Interval) -> NDArray[np.bool_]:
 
 
 def _mean_speed(guards: Guards, interval: Interval, mode: str) -> float:
-    """Return the largest absolute value of a guard (argument of sign, abs, ..) in an interval, over its length.
+    """Return the size of a guard (argument of sign, abs, ..) in an interval, divided by the length of the interval.
 
-    It is a scale for the speed with which the guard reaches zero at the end.
+    The size is the largest absolute value at start, middle and end. The guard is zero at the end of the interval, so
+    that the quotient is about its mean speed: a scale for the speed with which it reaches zero.
     """
     values = [abs(guards.guard(interval, mode, *place).value) for place in interval.places()]
     if guards.is_floor(mode):

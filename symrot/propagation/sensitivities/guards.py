@@ -36,7 +36,10 @@ DUALS = dual_functions(FLOAT_FUNCTIONS)
 
 
 class Gradient(NamedTuple):
-    """The value of a formula and its derivatives: by time, by the 7 states, and by the m variables at fixed states."""
+    """The value of a formula and its derivatives: by time, by the 7 states, and by the m variables at fixed states.
+
+    The variables are the initial values and constants of the scene by which a motion is differentiated.
+    """
 
     value: float
     time: float
@@ -48,7 +51,7 @@ class Gradient(NamedTuple):
         return self.time + float(self.states @ rates)
 
     def size(self, rates: Floats) -> float:
-        """Return the sum of the absolute terms of :meth:`along`."""
+        """Return the sum of the absolute values of the terms that :meth:`along` adds, as a scale for its result."""
         return abs(self.time) + float(np.abs(self.states) @ np.abs(rates))
 
     def change(self, slopes_of_states: Floats) -> Floats:
@@ -134,7 +137,11 @@ class Guards:
         return self._rates[key]
 
     def bound(self, parameters: Parameters, interval: Interval, kind: str) -> tuple[dict[str, float], Rows]:
-        """Return the values of parameters in an interval, by name, and their derivatives by the variables."""
+        """Return two dicts for the equations of an interval of the motion: values of parameters, and their derivatives.
+
+        The keys are names of the ``parameters``. The second dict has the m derivatives by the variables of each
+        parameter that depends on one. ``kind`` names the equations: ``"rates"``, ``"guards"`` or ``"quantities"``.
+        """
         timed = any(EPOCH in names(formula) for _, formula in parameters)
         key = kind, id(interval.regime), tuple(interval.modes.values()), interval.zero if timed else None
         if key not in self._slopes:
@@ -187,9 +194,9 @@ class Guards:
         return np.array(list(program.evaluate(inputs, FLOAT_FUNCTIONS, float).values()), dtype=np.float64)
 
     def rate_slopes(self, interval: Interval, t: float, y: Floats) -> Floats:
-        """Return the rates and all their derivatives, shape (7, 1 + 7 + m): one row for each state.
+        """Return the rates of the seven states with their derivatives, shape (7, 1 + 7 + m): one row for each state.
 
-        A row holds the rate, its derivatives by the states, and those by the variables.
+        A row has the rate, its derivatives by the seven states, and its derivatives by the m variables.
         """
         program, parameters = self.program(interval)
         inputs = self._duals(parameters, interval, t, y, "rates")

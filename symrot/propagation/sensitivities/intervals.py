@@ -53,9 +53,10 @@ class Interval:
 
 
 def smooth_intervals(motion: SwitchedMotion, end: float) -> tuple[list[Interval], dict[tuple[float, str], str]]:
-    """Return the smooth intervals of a motion to the time ``end``, s, and its switches.
+    """Return the smooth intervals of a motion to the time ``end``, s, and a dict of its switches.
 
-    The switches map a time, s, and a function to a word such as ``"passed"``.
+    A key of the dict is a pair (time, s, function as the user wrote it, such as ``"sign(omega_3)"``). The value says
+    what the argument of the function did then: ``"passed"`` (zero), was ``"held"`` at zero or ``"released"`` from it.
 
     Raises
     ------

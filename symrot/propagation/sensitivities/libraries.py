@@ -119,7 +119,10 @@ def needs_bounds(plan: Plan) -> bool:
 
 
 class MotionLibrary:
-    """The compiled code that integrates one motion and its derivatives; see :func:`variation_source`."""
+    """The compiled code that integrates one motion with its derivatives by the variables of ``depends``.
+
+    The arguments are those of :func:`variation_source`.
+    """
 
     def __init__(self, plan: Plan, rates: Program, depends: Sequence[Sequence[str]]) -> None:
         self._plan, self._rates, self._depends = plan, rates, depends

@@ -19,11 +19,14 @@ from symrot.scene.scene import Scene
 __all__ = ["ParameterSlopes", "Rows"]
 
 Rows = Mapping[str, list[float]]
-"""For parameters, by name: the derivatives by each variable."""
+"""Name of a parameter -> its m derivatives, one by each variable (initial value or constant of the scene)."""
 
 
 class ParameterSlopes:
-    """The derivatives of parameters by variables; ``columns`` has the dependence of the scene on each variable."""
+    """The derivatives of the parameters of a motion's equations by variables, initial values or constants of the scene.
+
+    ``columns`` has one :class:`Column` for each variable: the dependence of the scene on it.
+    """
 
     def __init__(self, scene: Scene, columns: Sequence[Column], structure: Structure) -> None:
         self.scene, self.columns, self.structure = scene, columns, structure

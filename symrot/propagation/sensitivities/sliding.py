@@ -1,4 +1,8 @@
-"""Guards that stay at zero: those that a sliding motion holds there, and those that rest at zero by chance."""
+"""Guards that stay at zero: those that a sliding motion holds there, and those that rest at zero by chance.
+
+A *guard* is the argument of a switching function (sign, abs, ..); its *mode* is the number that replaces the function
+in formulas. A guard is *held* if the equations determine the mode by the condition that the guard stays at zero.
+"""
 
 from collections.abc import Callable, Mapping
 from dataclasses import replace
@@ -27,10 +31,10 @@ def beside(guards: Guards, interval: Interval, signs: Mapping[str, int]) -> Inte
 
 
 def hold_at_rest(guards: Guards, interval: Interval) -> None:
-    """Change an interval so that it holds the guards (arguments of sign, abs, ..) which stay at zero in it.
+    """Give an interval equations that hold at zero the guards (arguments of sign, abs, ..) which stay at zero in it.
 
-    Guards that cannot be held are appended to the list ``resting`` of the interval. A guard is left alone if the rates
-    and their derivatives are the same on both sides of its zero.
+    Modes of guards for which there are no such equations are appended to ``interval.resting``. A guard is left alone if
+    the rates and their derivatives are the same on both sides of its zero.
     """
     resting = [mode for mode in interval.regime.formulas if mode not in interval.held and rests(guards, interval, mode)]
     for mode in resting:
@@ -91,10 +95,10 @@ def _is_smooth_at(guards: Guards, interval: Interval, mode: str) -> bool:
 
 
 def require_one_surface(guards: Guards, interval: Interval, mode: str, t: float, y: Floats) -> None:
-    """Raise PropagationError if two functions (sign, abs, ..) that switch together here do so only by chance.
+    """Raise PropagationError if another function switches together with a sign or abs here, but only by chance.
 
-    A change of time, state or variable then makes their arguments zero at different times, so that a motion cannot be
-    held at both jumps. ``mode`` stands for the first function.
+    A change of time, state or variable then makes their arguments zero at different times, so that a motion cannot
+    slide along both jumps. ``mode`` is the name of the number that replaces the first function in formulas.
     """
     guard = guards.guard(interval, mode, t, y)
     own = np.array([guard.time, *guard.states, *guard.variables])

@@ -18,8 +18,9 @@ Floats = NDArray[np.float64]
 def from_start(guards: Guards, interval: Interval, by: Floats) -> Floats:
     """Return the derivatives just after the start of a motion, for the derivatives ``by`` at the start, shape (7, m).
 
-    They differ from ``by`` if friction holds a component at zero from the start on: a motion that starts nearby then
-    comes to zero at once. Raise PropagationError if there are no derivatives.
+    They differ from ``by`` if friction, for example, holds a component of omega at zero from the start on: a component
+    that starts near zero comes to zero at once, and its derivatives become zero. Raise PropagationError if there are no
+    derivatives.
     """
     f = guards.rates(interval, interval.start, interval.first)
     for mode in interval.regime.formulas:
@@ -59,12 +60,11 @@ def from_start(guards: Guards, interval: Interval, by: Floats) -> Floats:
 
 
 def _require_constant(guards: Guards, interval: Interval, mode: str, other: int, change: Floats, f: Floats) -> None:
-    """Raise PropagationError if a variable moves a guard (argument of sign, floor, ..) that is zero at the start.
+    """Raise PropagationError if a motion starts at a jump of its rates, and a variable moves the start off the jump.
 
-    An error is raised only if the rates jump there.
-
-    ``change``: the derivatives of the guard by the variables; ``other``: the value of floor(x) on the other side;
-    ``f``: the rates on this side.
+    The jump is that of a function (sign, floor, ..) with the mode ``mode``, whose argument is now at the jump.
+    ``change``: the m derivatives of the argument by the variables; ``f``: the rates of the motion at its start;
+    ``other``: the value of floor(x) on the other side of the jump.
     """
     if not change.any() or guards.is_continuous(mode):
         return

@@ -21,7 +21,10 @@ Floats = NDArray[np.float64]
 
 
 class SwitchedEquations:
-    """The equations of a motion under torques that switch, and of its derivatives by variables."""
+    """The equations of a motion under torques that switch, and of its derivatives by variables.
+
+    The variables are initial values and constants of the scene, as ``keys`` names them; they have m components.
+    """
 
     def __init__(self, scene: Scene, keys: Sequence[str], varying: Collection[str] = ()) -> None:
         self.scene, self.keys, self.variables = scene, keys, read_variables(scene, keys)
@@ -31,13 +34,13 @@ class SwitchedEquations:
         self._walks: list[Walk] = []
 
     def fit(self, scene: Scene, keys: Sequence[str]) -> bool:
-        """Return whether these are the equations of a scene and its derivatives by the variables ``keys``."""
+        """Return whether these equations give the motion of ``scene`` and its derivatives by the variables ``keys``."""
         own = self.scene
         same = own.body is scene.body and own.torques is scene.torques and keys == self.keys
         return same and (self.restartable or own.initial == scene.initial)
 
     def follow(self, scene: Scene, times: Floats, begin: float | None = None) -> tuple[Floats, Floats]:
-        """Return the states at times, shape (n, 7), and their derivatives by each variable, shape (n, 7, variables).
+        """Return the states at n times, shape (n, 7), and their derivatives by the m variables, shape (n, 7, m).
 
         Derivatives are NaN exactly at a switch at which they jump. ``begin``, s, is the initial time.
         """
@@ -78,7 +81,10 @@ class SwitchedEquations:
         return tuple(every)
 
     def switchings(self, scene: Scene, times: Floats) -> tuple[SwitchSlopes, ...]:
-        """Return the switches on the way to ``times``, s, with the derivatives of their times by the variables."""
+        """Return the switches of the motion on the way to ``times``, s, each with the derivatives of its time.
+
+        These are the m derivatives by the variables of :attr:`keys`.
+        """
         begin, every = float(scene.span.start), []
         for side in (1.0, -1.0):
             chosen = side * times > side * begin

@@ -49,12 +49,15 @@ __all__ = ["TableEquations"]
 Floats = NDArray[np.float64]
 KNOT = "table_knot"
 COEFFICIENTS = tuple(f"table_{axis}_{power}" for axis in (1, 2, 3) for power in (3, 2, 1, 0))
-"""The constants of the polynomials, in the order of SciPy's coefficients for each component."""
+"""The names of the coefficients of the cubic polynomials that replace the torque table in one of its intervals.
+
+``table_2_3`` is the coefficient of the third power of time for component 2 of the torque.
+"""
 MOST_BOUND = 5000  # intervals whose parameters are stored
 
 
 def _others_use_time(scene: Scene) -> bool:
-    """Return whether a torque of the scene other than the table depends on time."""
+    """Return whether a torque of the scene depends on time, apart from the torque given by a table of samples."""
     formulas = [parse(formula, switching=True) for torque in scene.torques for formula in torque.formulas]
     return "gravity_gradient" in scene.torque_kinds or any("t" in names(formula) for formula in formulas)
 
@@ -77,7 +80,10 @@ def _with_formulas(scene: Scene) -> Scene:
 
 
 class TableEquations:
-    """The equations of a motion under a table of samples, and of its derivatives by variables."""
+    """The equations of a motion under a torque given by a table of samples, and of its derivatives by variables.
+
+    The variables are initial values and constants of the scene, as ``keys`` names them; they have m components.
+    """
 
     def __init__(self, scene: Scene, keys: Sequence[str]) -> None:
         self.scene, self.keys, self.variables = scene, keys, read_variables(scene, keys)
@@ -108,13 +114,13 @@ class TableEquations:
         self._bound: dict[int, tuple[dict[str, float], Rows]] = {}
 
     def fit(self, scene: Scene, keys: Sequence[str]) -> bool:
-        """Return whether these are the equations of a scene and its derivatives by the variables ``keys``."""
+        """Return whether these equations give the motion of ``scene`` and its derivatives by the variables ``keys``."""
         own = self.scene
         same = own.body is scene.body and own.torques is scene.torques and own.table is scene.table
         return same and keys == self.keys and (self.restartable or own.initial == scene.initial)
 
     def follow(self, scene: Scene, times: Floats, begin: float | None = None) -> tuple[Floats, Floats]:
-        """Return the states at times, shape (n, 7), and their derivatives by each variable, shape (n, 7, variables).
+        """Return the states at n times, shape (n, 7), and their derivatives by the m variables, shape (n, 7, m).
 
         ``begin``, s, is the initial time.
         """
@@ -133,7 +139,11 @@ class TableEquations:
     def _one_way(
         self, scene: Scene, y: Floats, by: Floats, begin: float, times: Floats, side: float
     ) -> tuple[Floats, Floats]:
-        """Return states and derivatives at ``times``, which increase if ``side`` is 1 and decrease if it is -1."""
+        """Return the states at n ``times``, shape (n, 7), and their derivatives by the m variables, shape (n, 7, m).
+
+        ``y`` and ``by`` are states and derivatives at the time ``begin``, s. The times are beyond it, in the direction
+        of ``side``: they increase if it is 1 and decrease if it is -1.
+        """
         edges, units = self._pieces.edges, [unit_of(scene, column) for column in self._columns]
         all_states, all_by, done, now = [], [], 0, begin
         while done < len(times):
@@ -151,7 +161,11 @@ class TableEquations:
     def _in_piece(
         self, k: int, y: Floats, by: Floats, begin: float, times: Floats, units: list[float]
     ) -> tuple[Floats, Floats]:
-        """Return states and derivatives at times in the interval number k; ``units`` are changed to those used."""
+        """Return states and derivatives, as :meth:`_one_way` does, at times in interval k of the table.
+
+        ``units`` has for each variable the power of two by which its derivatives are multiplied during integration; the
+        list is changed in place to the units used last.
+        """
         values, rows = self._numbers(k)
         knot = float(self._pieces.edges[k])
 
@@ -164,7 +178,7 @@ class TableEquations:
         )
 
     def _numbers(self, k: int) -> tuple[dict[str, float], Rows]:
-        """Return the values of the parameters in the interval number k, and their derivatives by the variables."""
+        """Return two dicts: the values of the parameters in interval k of the table, and their derivatives, by name."""
         if k not in self._bound:
             if len(self._bound) >= MOST_BOUND:
                 self._bound.clear()
@@ -210,7 +224,10 @@ class TableEquations:
 
 
 class _Pieces:
-    """The intervals of a table with their cubic polynomials; interval k is from ``edges[k]`` to ``edges[k + 1]``, s."""
+    """The time intervals of a table of samples, each with three cubic polynomials, one per component of the torque.
+
+    Interval k is from ``edges[k]`` to ``edges[k + 1]``, s.
+    """
 
     def __init__(self, table: Table) -> None:
         splines = table_splines(np.array(table.times), np.array(table.moments), table.switching_times)
@@ -236,14 +253,14 @@ def _unit_table(table: Table, place: int, axis: int) -> Table:
 
 
 def _sample_of(scene: Scene, variable: Variable) -> tuple[int, int] | None:
-    """Return the numbers of the sample and of the component that a variable changes, such as (2, 0).
+    """Return which number of a torque's table of samples a variable is: (index of sample, index of component), from 0.
 
-    Return None for a variable outside the table.
+    Return None for a variable that does not belong to the table.
 
     Raises
     ------
     InputError
-        If the variable is another number of the table, such as a time.
+        If the variable belongs to the table but is not a sample, for instance a time.
     """
     path = path_of(variable.key)
     if len(path) < 2 or path[0] != "torque" or scene.value(f"torque[{path[1]}].kind") != TABLE_KIND.kind:
@@ -257,7 +274,11 @@ def _sample_of(scene: Scene, variable: Variable) -> tuple[int, int] | None:
 
 
 def _replaced(variable: Variable, sample: tuple[int, int] | None) -> Variable:
-    """Return a variable that changes the scene with formulas in place of the table; a sample changes no constant."""
+    """Return ``variable`` as a variable of the scene in which formulas replace the table of samples.
+
+    If it is a sample of the table (``sample`` is not None), it changes nothing there: how the coefficients of the
+    formulas depend on the sample is added elsewhere.
+    """
     moved = variable.moved
     if moved is None:
         return variable

@@ -1,4 +1,7 @@
-"""Guards that touch zero inside an interval, where the derivatives of a motion under a jump do not exist."""
+"""Guards that touch zero without passing it: if the torque jumps there, the motion has no derivatives afterwards.
+
+A *guard* is the argument of a switching function (sign, floor, ..).
+"""
 
 import numpy as np
 from numpy.typing import NDArray
@@ -35,9 +38,9 @@ def refuse_touching(guards: Guards, interval: Interval) -> None:
 
 
 def _touching(guards: Guards, interval: Interval, mode: str) -> float | None:
-    """Return the time at which an argument touches zero in an interval, s on its clock; None if it does not.
+    """Return the first time, s after ``interval.zero``, at which an argument touches zero in an interval, or None.
 
-    It is the argument of the function (sign, floor, ..) for which ``mode`` stands.
+    It is the argument of the function (sign, floor, ..) for which ``mode`` stands; None: it does not touch zero.
     """
     values, _ = guards.bound(interval.regime.parameters, interval, "guards")
     constants = {**{name: float(value) for name, value in interval.modes.items()}, **values}

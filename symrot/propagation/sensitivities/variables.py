@@ -279,13 +279,13 @@ class _Differences:
         raise InputError(f"sensitivities: expected a scene that stays valid if {name} changes, got {refusal}")
 
     def at(self, place: int) -> Numbers:
-        """Return the numbers if the variable changes by ``place`` steps."""
+        """Return the numbers, by name, after a change of the variable by ``place`` steps from its present value."""
         if place not in self._points:
             self._points[place] = self._values(place * self._step)
         return self._points[place]
 
     def slope(self, each: str) -> Fraction | None:
-        """Return the derivative of a number, or None if it has none."""
+        """Return the derivative, by the variable, of the number with the name ``each``; None if it has none."""
         first, second = self._quotient(each, 1), self._quotient(each, 2)
         if self._bends(each):
             return None
@@ -300,9 +300,10 @@ class _Differences:
         return total / (size * self._step)
 
     def _bends(self, each: str) -> bool:
-        """Return whether the derivatives on both sides differ.
+        """Return whether the number with the name ``each`` has a kink at the variable's present value.
 
-        At a kink the second difference is proportional to the step, elsewhere to the square of the step.
+        At a kink, the second difference is proportional to the step, elsewhere to the square of the step. The result is
+        False if only values on one side of the present one are valid.
         """
         if self._weights is not self.SCHEMES[0]:
             return False

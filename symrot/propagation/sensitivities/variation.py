@@ -63,7 +63,10 @@ TRIES = 4
 # The equations assume nothing about numbers that a variable can change: a derivative by a moment of inertia needs the
 # equations of a body without symmetry.
 class Column:
-    """The dependence of a scene on one variable: derivatives of the initial state and of the constants."""
+    """The dependence of a scene on one variable, an initial value or a constant.
+
+    ``start`` has the derivatives of the initial state by it, ``constants`` those of the constants of the equations.
+    """
 
     def __init__(self, scene: Scene, variable: Variable, general: Structure) -> None:
         self.variable = variable
@@ -78,7 +81,7 @@ class Column:
         self.constants = every
 
     def start_from(self, initial: Initial) -> list[float]:
-        """Return the derivatives of omega and quaternion at the start by this variable, for an initial state."""
+        """Return the derivatives by :attr:`variable` of an initial state: of omega and the quaternion, 7 numbers."""
         # only those by a small rotation of the attitude depend on the initial state
         if self.variable.moved is not None:
             return self.start
@@ -153,7 +156,10 @@ def structure_of(scene: Scene, columns: Sequence[Column], varying: Collection[st
 
 
 class SmoothEquations:
-    """The compiled equations of a scene's motion, from any initial state, and of its derivatives by variables."""
+    """The compiled equations of a scene's motion, from any initial state, and of its derivatives by variables.
+
+    The variables are initial values and constants of the scene, as ``keys`` names them; they have m components.
+    """
 
     def __init__(self, scene: Scene, keys: Sequence[str]) -> None:
         self.scene, self.keys, self.variables = scene, keys, read_variables(scene, keys)
@@ -164,7 +170,7 @@ class SmoothEquations:
         self._moved: tuple[float, list[_Part]] = (0.0, self._parts)
 
     def fit(self, scene: Scene, keys: Sequence[str]) -> bool:
-        """Return whether these are the equations of a scene and its derivatives by the variables ``keys``."""
+        """Return whether these equations give the motion of ``scene`` and its derivatives by the variables ``keys``."""
         own = self.scene
         same = (
             own.body is scene.body and own.torques is scene.torques and own.table is scene.table and keys == self.keys
@@ -172,7 +178,7 @@ class SmoothEquations:
         return same and (self.restartable or own.initial == scene.initial)
 
     def follow(self, scene: Scene, times: Floats, begin: float | None = None) -> tuple[Floats, Floats]:
-        """Return the states at times, shape (n, 7), and their derivatives by each variable, shape (n, 7, variables).
+        """Return the states at n times, shape (n, 7), and their derivatives by the m variables, shape (n, 7, m).
 
         ``begin``, s, is the initial time.
         """
@@ -203,7 +209,10 @@ class SmoothEquations:
         return np.array(rows).reshape(len(times), len(STATES))
 
     def _chosen(self, begin: float, times: Floats) -> "tuple[list[_Part], float]":
-        """Return the equations for a motion that begins at the time ``begin``, s, and the epoch of their clock, s."""
+        """Return the equations for a motion from ``begin``, s, and the scene time, s, from which they count time.
+
+        They count time from ``begin`` if the motion is far from t = 0 and depends on time, else from 0.
+        """
         if self._uses_time and len(times) and starts_far(begin, float(times.min()), float(times.max())):
             return self._parts_from(begin), begin
         return self._parts, 0.0
@@ -285,7 +294,7 @@ def follow_columns(
     start, starts : sequences
         The states at the time ``begin``, and for each variable their derivatives.
     units : m numbers
-        Powers of two, near the sizes of the variables.
+        For each variable, a power of two near its size, by which its derivatives are multiplied during integration.
     begin : float
         Initial time, s, on the clock of the library.
     times : array, shape (n,)
@@ -342,7 +351,7 @@ def follow_interval(
     y, by : arrays, shapes (7,) and (7, m)
         States and derivatives at the time ``begin``.
     units : list of m floats
-        As for :func:`follow_columns`; replaced by the units used last.
+        As for :func:`follow_columns`; the list is changed in place to the units used last.
     begin, times, labelled
         As for :func:`follow_columns`.
     """
@@ -383,7 +392,10 @@ def unit_of(scene: Scene, column: Column) -> float:
 
 
 def fitting_unit(unit: float, by: Floats) -> float:
-    """Return ``unit`` or, if ``unit`` times the largest of the derivatives ``by`` exceeds 2, a smaller power of two."""
+    """Return ``unit``, by which the derivatives ``by`` are to be multiplied, or a smaller power of two.
+
+    A smaller one is returned if the largest product exceeds 2; with it, the largest product is between 1 and 2.
+    """
     largest = float(np.abs(by).max())
     return ldexp(1.0, 1 - frexp(largest)[1]) if largest * unit > 2.0 else unit
 

@@ -143,9 +143,10 @@ class Walk:
         return states, by
 
     def sides(self, t: float, tolerance: float) -> list[tuple[Floats, Floats, Floats]]:
-        """Return state, rates and derivatives at a time, s: one triple, or two at a switch, before and after it.
+        """Return (state, rates, derivatives) at the time t, s: one triple, or two at a switch, before and after it.
 
-        A time is at a switch if it is nearer to it than the errors of a motion with the given tolerance.
+        The time counts as that of a switch if their distance is no more than the error, in s, that a motion with this
+        tolerance may cause.
         """
         for place, interval in enumerate(self.intervals[:-1]):
             following = self.intervals[place + 1]

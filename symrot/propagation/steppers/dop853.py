@@ -42,13 +42,18 @@ ROUGH = "#define SYMROT_ROUGH\n"  # the error control handles corners, such as a
 MIDDLE_REACH = 3  # index of the first disc to try in symrot.codegen.enclosure.terms.REACHES
 
 Clock = Callable[[float], tuple[PathLike, Sequence[float]]]
-"""Function from an epoch, s, to the library of a kernel that counts time from the epoch, and its parameters."""
+"""Function that takes an epoch, s, and returns a kernel's library and the values of its parameters for this epoch.
+
+The rates of this kernel take the time since the epoch.
+"""
 
 FAR = 1e4  # steps from the epoch: farther on, the time would be rounded to more than 1e-12 of a step
 WINDOW = 2048
-"""Number of steps after which the clock of a kernel is moved: phases on it stay below some 1e3 rad, and moving it costs
-a few per cent of the time. The phase errors between two moves are alike and add up: with 8192 steps they were five
-times as large."""
+"""Number of steps after which the epoch, from which the rates count time, is moved to the present time.
+
+Phases ``a*t`` in the rates then stay below some 1e3 rad, and the moves cost a few per cent of the time. Phase errors
+between two moves are alike and add up: with 8192 steps they were five times as large.
+"""
 
 
 def step_tolerance(tolerance: float) -> tuple[float, float]:
@@ -148,7 +153,8 @@ def integration(
     breaks : sequence of float
         Times, s, at which the rates jump; a step ends exactly at each of them, and the integration restarts.
     clock : function, optional
-        A :data:`Clock`, if the kernel can count time from an epoch.
+        A :data:`Clock`: takes an epoch, s, and returns library and parameters of rates that take the time since it.
+        It is needed for rates that depend on time: the stepper moves the epoch so that late times keep their digits.
 
     Raises
     ------

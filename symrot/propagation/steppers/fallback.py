@@ -121,7 +121,8 @@ class Options:
         Bounds on how far the right-hand side may change within a step. They limit the steps, so that no step misses a
         short pulse.
     clock : callable, optional
-        A :data:`Clock`, if the right-hand side can count time from an epoch.
+        A :data:`Clock`: takes an epoch, s, and returns the right-hand side that takes the time since the epoch, and its
+        parameters. With it, steps that are short compared with their time keep their digits.
     whole : WholeMotion, optional
         The whole motion, if only a part of it is followed. Then ``max_steps`` is the limit for the whole motion.
     """
@@ -140,7 +141,7 @@ class Options:
 def integrate(
     rhs: Rhs, p: ArrayLike, y0: ArrayLike, t0: float, times: ArrayLike, tolerance: float, options: Options = Options()
 ) -> tuple[Floats, Stats]:
-    """Return the states at the sample times, shape (n, N), and the cost of the motion.
+    """Return the N states at the n sample times, shape (n, N), and the cost of the motion.
 
     Parameters
     ----------
@@ -198,7 +199,7 @@ def record(
 
 
 class FallbackRecording(Recording):
-    """A motion by SciPy, computable at any time; see :class:`symrot.propagation.steppers.recording.Recording`."""
+    """A motion integrated by SciPy as a function from times in its span to states, made of SciPy's interpolants."""
 
     def __init__(self, motion: "_Integration", pieces: list[Piece], low: float, high: float) -> None:
         self._pieces = pieces
@@ -284,7 +285,7 @@ class _Integration:
         return stats_of((self.steps, 0, self.evaluations), perf_counter() - self.began, (), rounded)
 
     def follow(self, times: Floats) -> Floats:
-        """Return the states, shape (n, N), at times on one side of t0, sorted by distance from t0."""
+        """Return the N states at n times, shape (n, N); the times are on one side of t0, sorted by distance from t0."""
         states = np.empty((len(times), len(self.y0)))
         _evaluate(self.solutions(float(times[-1])), times, states)
         states[times == self.t0] = self.y0
@@ -452,7 +453,10 @@ class _Integration:
         return float(rest)
 
     def _judge_pace(self, t: float, stop: float) -> None:
-        """Raise IntegrationStopped if the evaluations exceed their limit, or would by far on the way to ``stop``."""
+        """Raise IntegrationStopped if the evaluations up to the time t, s, exceed their limit.
+
+        Do so also if they would exceed it by far on the way to ``stop`` at their present pace.
+        """
         work = self.work
         spent = work - self.mark[0]
         if spent >= PATIENCE:

@@ -51,7 +51,10 @@ def segments(t0: float, end: float, breaks: Sequence[float]) -> list[Segment]:
 
 
 def _inside(edge: float, other: float) -> float:
-    """Return a time in a segment, so near to its end ``edge`` that a torque with a jump there has just jumped."""
+    """Return a time just inside a segment, next to its end ``edge``; ``other`` is the time of its other end.
+
+    If a torque jumps at ``edge``, it has at the returned time its value on this side of the jump.
+    """
     # too near the edge to affect the choice of the first step
     time = edge + SLIVER * (other - edge)
     return time if time != edge else math.nextafter(edge, other)

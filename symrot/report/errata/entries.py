@@ -127,7 +127,7 @@ ORIGINS = {
     "derivation": "derived from the reference",
     "proposal": "proposed by a person",
 }
-"""Origin of a correction -> the words for it."""
+"""Origin of a correction -> the words that follow "The correction was" in the sentence about its proof."""
 
 
 def _proof(item: Finding, letters: Mapping[str, str]) -> str:
@@ -175,7 +175,9 @@ WORDS = {
     ("sin", ">="): "{} lies between 0 and 180 degrees",
     ("cos", ">="): "{} lies between -90 and 90 degrees",
 }
-"""Function of an angle, and what must hold of it against zero -> the words of a book for it."""
+"""(function of an angle, comparison of its value with zero) -> the condition on the angle in words.
+
+``("sin", "!=")`` is the condition ``sin(angle) != 0``; ``{}`` in the words is the angle."""
 
 
 def condition_words(condition: str) -> str:

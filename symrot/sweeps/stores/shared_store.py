@@ -1,7 +1,8 @@
 """Writing of chunks by workers on the machine of the client, which then need not send them.
 
-While a client runs, it holds a file in memory that contains a mark of this client. A worker writes only if it finds the
-mark in the memory of the running client. Otherwise the client is remote or has ended, and the worker returns its chunk.
+The client is the process that runs a sweep and submits its chunks to workers. It makes an offer: while it runs, it
+holds a file in memory with a mark, a text of its own. A worker writes only if it finds the mark in this file. Otherwise
+the client is on another machine or has ended, and the worker returns its chunk.
 """
 
 import os
@@ -29,7 +30,10 @@ class Written(NamedTuple):
 
 
 class Offer(NamedTuple):
-    """What a worker needs to write: the path of the client's file in memory, its mark, the folder, and the store."""
+    """What a worker needs to write chunks of a sweep into the store of the client, the process that runs the sweep.
+
+    ``file`` is the path of a file in the client's memory, ``mark`` the text in it that no other client has.
+    """
 
     file: str
     mark: str
@@ -75,13 +79,16 @@ def _folder(path: Path) -> tuple[int, int]:
 
 @lru_cache(maxsize=1)
 def _opened(store: bytes, mark: str) -> Any:
-    """Return the store of an :class:`Offer`, or None if its folder is missing; each client (``mark``) has its own."""
+    """Return the store that the field ``store`` of an :class:`Offer` describes, or None if its folder is missing.
+
+    The result is cached until an offer of another client, with another ``mark``, comes.
+    """
     kind, path, header = pickle.loads(store)
     return kind(path, header) if path.is_dir() else None
 
 
 def _is_valid(offer: Offer) -> bool:
-    """Return whether the client that made an offer still runs, on this machine."""
+    """Return whether the client that made an offer, the process that runs the sweep, still runs, on this machine."""
     try:
         return offer.mark.startswith(f"{_machine()} ") and Path(offer.file).read_bytes() == offer.mark.encode()
     except OSError:
@@ -89,9 +96,10 @@ def _is_valid(offer: Offer) -> bool:
 
 
 def stored(chunk: Chunk, offer: Offer) -> Chunk | Written:
-    """Write a chunk into the store of an offer; return the chunk itself if that is not possible.
+    """Write a chunk into the store of an :class:`Offer`, and return its range of trajectories (:class:`Written`).
 
-    The client then writes the chunk, or says why it cannot.
+    Return the chunk itself if that is not possible: the client, the process that runs the sweep, then writes it, or
+    says why it cannot.
     """
     try:
         store = _opened(offer.store, offer.mark) if _is_valid(offer) else None

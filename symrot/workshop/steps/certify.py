@@ -1,4 +1,7 @@
-"""The certificate of a step of a scene, with bounds of its errors, for `symrot certify SCENE --step METHOD`."""
+"""The certificate of an emitted time step of a scene, with bounds of its errors.
+
+`symrot certify SCENE --step METHOD` prints or writes it.
+"""
 
 import json
 from collections.abc import Callable, Mapping, Sequence
@@ -29,7 +32,7 @@ def certify_step(
     scene: str, step: str, order: int | None = None, ranges: Sequence[str] = (), directory: Path | None = None,
     progress: Callable[[str], object] = lambda text: None,
 ) -> tuple[Data, list[Path]]:  # fmt: skip
-    """Return the certificate of a step of a scene, and the paths of the written files.
+    """Return the certificate of a time step of a scene's motion, and the paths of the written files.
 
     Parameters
     ----------

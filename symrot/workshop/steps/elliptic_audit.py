@@ -20,10 +20,9 @@ from symrot.workshop.steps.exact import ExactStepText, plain_content
 __all__ = ["audit_elliptic"]
 
 NEAR = 1 + 1e-6
-"""Stated and recomputed bounds count as equal if they differ by at most this factor.
+"""Largest ratio by which a bound in a certificate may differ from the bound that this machine computes again.
 
-So the stated bounds still hold: certificates state bounds that are larger than the computed ones by more than this
-factor.
+The bound in the certificate still holds: symrot states bounds that are 1 + 2e-6 times as large as the computed ones.
 """
 
 
@@ -78,7 +77,10 @@ def audit_elliptic(path: Path, data: Data, scene: SceneSource | None = None) -> 
 
 
 def _box(path: Path, data: Data) -> dict[str, tuple[Fraction, Fraction]]:
-    """Return the box of the bounds in a certificate."""
+    """Return the ranges of the inputs on which a certificate (``data``) bounds the errors: name -> (low, high).
+
+    CertificateError, with the ``path`` of the certificate in its message, is raised if there are no such ranges.
+    """
     try:
         box = data["bounds"]["box"]
         ends = {name: (float.fromhex(low), float.fromhex(high)) for name, (low, high) in box.items()}
@@ -112,7 +114,10 @@ def _bounds(path: Path, step: ExactStepText, data: Data) -> Data:
 
 
 def _numbers(path: Path, bounds: Data, kind: str) -> dict[str, float]:
-    """Return the bound of each state that the part ``kind`` of the section ``bounds`` of a certificate states."""
+    """Return the bounds of one ``kind`` of error, "rounding" or "truncation": name of a state -> bound.
+
+    ``bounds`` is the section of that name in a certificate. CertificateError is raised for a missing number.
+    """
     try:
         return {name: float.fromhex(bounds[kind][name]) for name in STATE_NAMES}
     except (KeyError, TypeError, ValueError, OverflowError) as reason:
@@ -131,7 +136,10 @@ def _same(path: Path, own: Data, data: Data) -> None:
 
 
 def _step(path: Path, data: Data) -> ExactStepText:
-    """Return the step of the scene that a certificate states."""
+    """Return the time step, with its C files and certificate, of the scene that is stored in a certificate (``data``).
+
+    CertificateError is raised if this scene has no exact step with elliptic functions.
+    """
     try:
         name, content = data["scene"]["name"], data["scene"]["content"]
         if not isinstance(name, str) or not isinstance(content, Mapping):
