@@ -1,7 +1,7 @@
 """The equations that a claim becomes on the branch cuts of its functions ``atan2(y, x)``, where y = 0 and x < 0.
 
-A proof that divides by a formula that is zero there says nothing about these points, and since atan2 jumps there,
-continuity does not either.
+A proof that divides by a formula that is zero on a branch cut says nothing about the points of the cut. Nor can these
+points be reached as limits of other points, since atan2 jumps at the cut.
 """
 
 from collections.abc import Iterator, Sequence
@@ -19,7 +19,8 @@ __all__ = ["BranchCut", "branch_cuts"]
 
 @dataclass(frozen=True)
 class BranchCut:
-    """A branch cut, where ``zero`` is zero and ``negative`` is negative.
+    """A branch cut of ``atan2(y, x)``: the formula ``zero``, for y, is zero and the formula ``negative``, for x, is
+    negative.
 
     ``values`` maps each atan2 whose first argument vanishes on the cut to its value there.
     """
@@ -30,7 +31,7 @@ class BranchCut:
 
     @property
     def solutions(self) -> list[dict[Expr, Expr]]:
-        """Values of one symbol for which ``zero`` is zero; empty if none are found easily."""
+        """Solutions of ``zero = 0`` for one of its symbols, each as {symbol: value}; empty if none is found easily."""
         for symbol in sorted(self.zero.free_symbols, key=str):
             slope, rest = self.zero.diff(symbol), self.zero.subs(symbol, 0)
             if slope.is_number:
@@ -47,7 +48,7 @@ class BranchCut:
 
 
 def branch_cuts(formulas: Sequence[Expr]) -> Iterator[BranchCut]:
-    """Yield the branch cuts of the functions atan2 in formulas, each once; only those with points that are easily
+    """Yield the branch cuts of the functions atan2 in formulas, each once; only the cuts on which points are easily
     found.
     """
     jumps = sorted({node for formula in formulas for node in formula.atoms(atan2)}, key=str)

@@ -25,7 +25,8 @@ __all__ = ["branch_requirements", "requirements"]
 
 MOMENT = re.compile(r"[ABC]|[IJ]_?([xyz1-3]|([xyz1-3])\2|p|perp|par|parallel|t|s|a)?", re.ASCII)
 PRODUCT_OF_INERTIA = re.compile(r"[IJP]_?(xy|yx|xz|zx|yz|zy|12|21|13|31|23|32)", re.ASCII)
-"""Patterns of names of moments of inertia, and of products of inertia."""
+"""MOMENT is the pattern of names of moments of inertia, PRODUCT_OF_INERTIA the pattern of names of products of
+inertia."""
 
 MOST_TERMS, LARGEST_DEGREE, MOST_LETTERS = 400, 24, 20
 """The largest number of terms, degree and number of letters of a residual (left minus right) that is factored.
@@ -150,14 +151,15 @@ def _is_unit_norm(factor: PolyElement, variables: int) -> bool:
 def _no_products(
     ring: FormulaRing, numerators: Sequence[PolyElement], sides: Sequence[tuple[Expr, Expr]]
 ) -> list[Requirement]:
-    """Return [condition] if a claim is true where all products of inertia are zero, and one side of each entry has
-    none; otherwise [].
+    """Return [condition] if a claim is true where its products of inertia are zero, as a book may assume; otherwise [].
+
+    A book that assumes principal axes leaves these products out on one side: in each pair of ``sides``, the left or the
+    right side must contain none of the products that the condition sets to zero.
     """
     products = [(leaf, n) for leaf, n in ring.symbols.items() if _matches(PRODUCT_OF_INERTIA, leaf)]
     if not products or not all(any(mono[n] for _, n in products) for poly in numerators for mono in poly):
         return []
     used = [leaf for leaf, n in products if any(mono[n] for poly in numerators for mono in poly)]
-    # a book that assumes principal axes leaves products of inertia out on one side
     if not all(any(not side.has(*used) for side in pair) for pair in sides):
         return []
     return [Requirement("requires_condition", " and ".join(f"{leaf} == 0" for leaf in used), tuple(used))]

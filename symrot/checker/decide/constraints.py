@@ -70,11 +70,10 @@ class Constraints:
 def distinct_factors(poly: PolyElement) -> list[PolyElement]:
     """Return the different factors of a polynomial that is not constant, each with leading coefficient 1.
 
-    Of a large one, only single unknowns are split off.
+    A large polynomial is not factored: only unknowns that divide all its terms are split off, as x from ``x*y + x*z``.
     """
     if len(poly) <= MOST_TERMS and len(occurring([poly])) <= MOST_UNKNOWNS and max(map(sum, poly)) <= LARGEST_DEGREE:
         return [factor.monic() for factor, _ in factor_list(poly)[1]]
-    # a large polynomial is not factored: only unknowns that divide every term are split off
     shared = [min(column) for column in zip(*poly, strict=True)]
     unknowns = [poly.ring.gens[place] for place, power in enumerate(shared) if power]
     if unknowns:

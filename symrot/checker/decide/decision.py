@@ -69,8 +69,10 @@ def decide_equation(equation: Equation) -> Decision:
 
 
 def _with_letters_for_sums(equation: Equation, decision: Decision) -> Decision:
-    """Return "true" if an equation is proven, without conditions, for letters in place of long sums in its functions;
-    otherwise ``decision``.
+    """Return "true" if an equation is proven after long sums inside functions were replaced by letters.
+
+    For instance, ``sin(a + b + c + d + e)`` becomes ``sin(s)``. Return ``decision`` if there is no such proof, if the
+    proof needs conditions, and for an equation with further conditions, such as hypotheses or divisors in its text.
     """
     # sin(a + b + .. + m)**2 + cos(a + b + .. + m)**2 == 1 is too long to be expanded
     if equation.hypotheses or equation.divisors or equation.radicands or equation.bases:
@@ -112,7 +114,10 @@ def _with_positive_symbols(equation: Equation, decision: Decision) -> Decision:
 
 
 def _without_divisor(condition: Any, equation: Equation) -> Any:
-    """Return x for a ``condition`` on ``x/abs(y)`` if the equation is true for y = 0; otherwise ``condition``."""
+    """Return a condition without the divisors that it need not have: ``x >= 0`` for ``x/abs(y) >= 0``.
+
+    A divisor abs(y) is dropped if the equation is proven to be true for y = 0.
+    """
     # the proof of sqrt(x**2*y**2) == x*y gives the condition x/abs(y) >= 0, which becomes x >= 0
     if not isinstance(condition, Requirement) or condition.strict or equation.hypotheses:
         return condition
@@ -207,8 +212,9 @@ def for_positive_bases(decision: Decision, equation: Equation) -> Decision:
 
 
 def _off_branch_cuts(decision: Decision, equation: Equation) -> Decision:
-    """Return ``decision``, "true" or "conditional", with the condition that no atan2 is on a branch cut on which the
-    sides are known to differ.
+    """Return ``decision``, or "conditional" if the sides are known to differ on a branch cut of an atan2.
+
+    The condition excludes such branch cuts. The verdict of ``decision`` is "true" or "conditional".
     """
     usual = decision.requires or (Requirement("principal_value", ""),)
     requirements, witness = usual, decision.counterexample

@@ -33,10 +33,11 @@ from symrot.exact.ring.ring import FormulaRing
 __all__ = ["Hypotheses"]
 
 FEW = 24
-"""The number of points that are drawn before proofs, which take longer, are tried."""
+"""The number of random points that are tried before proofs, which take longer."""
 
 CANDIDATES = 8
-"""The number of points at which the sides differ that are collected; the shortest becomes the counterexample."""
+"""The search for a counterexample ends after this many points at which the sides differ. The point that is shortest as
+text becomes the counterexample, a rational one if there is any."""
 
 OTHER_VALUES = tuple(Rational(n, d) for n, d in ((1, 1), (2, 1), (1, 2), (-1, 1), (3, 1), (-1, 3), (5, 7), (-3, 2)))
 """Values for symbols that occur in no hypothesis."""
@@ -73,7 +74,7 @@ class Hypotheses:
         return real_points(self.constraints)
 
     def points(self, attempts: int = ATTEMPTS) -> Iterator[RealPoint]:
-        """Yield random points that obey all constraints, from at most ``attempts`` drawings."""
+        """Yield random points that obey all constraints, at most one for each of ``attempts`` attempts."""
         number = 0
         while number < attempts:
             # each point is drawn once and stored for later calls
@@ -147,12 +148,12 @@ class Hypotheses:
         return is_dense(self.ring) and all(need.sign == "!= 0" for need in needs)
 
     def _true_number(self, need: Need, is_of_sides: bool) -> bool:
-        """Return whether a condition without symbols, such as ``2 - 1 > 0``, is proven.
+        """Return whether a condition without symbols, such as ``2 - 1 > 0``, is proven; False if it may fail.
 
         Raises
         ------
         InputError
-            If a condition of the sides is proven to be false. The result False means that it could not be proven.
+            If the condition is proven to be false, and sides or hypotheses then have no real value (``is_of_sides``).
         """
         interval = enclosure(need.formula)
         if interval is None:
@@ -290,7 +291,7 @@ class Hypotheses:
         return point.number(above / below)
 
     def _parts(self, side: Expr) -> tuple[PolyElement, PolyElement]:
-        """Return the numerator and the denominator of a side of the claim, as polynomials in the constraints' ring."""
+        """Return numerator and denominator of a side of the claim, as polynomials in ``self.constraints.ring``."""
         ratio, target = self.ring.ratio(side), self.constraints.ring
         return ratio.numerator.set_ring(target), self.ring.ratios.denominator(ratio).set_ring(target)
 
@@ -319,8 +320,10 @@ class Hypotheses:
         return None
 
     def _other_divisors_nonzero(self, point: RealPoint) -> bool:
-        """Return whether the divisors in ``constraints.unconstrained``, such as tanh(x), are nonzero at a point."""
-        # the random search solves polynomial equations only, and ignores these divisors
+        """Return whether the divisors that the random search ignores, such as tanh(x), are nonzero at a point.
+
+        These divisors are ``constraints.unconstrained``; the search solves polynomial equations only.
+        """
         factors = [factor.as_expr(*self.ring.generators) for factor in self.constraints.unconstrained]
         values = self._values_for(factors, point)
         return all(holds(Need(factor, "!= 0"), values) for factor in factors)

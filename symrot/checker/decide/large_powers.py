@@ -27,21 +27,23 @@ LARGEST_DEGREE = 240
 """The largest degree in symbols, sines and cosines of a formula that is expanded."""
 
 LARGEST_EXPANDED = 64
-"""The largest product of an exponent and the degree of its base for which a power is not replaced."""
+"""A power is replaced by a letter if its exponent times the degree of its base is larger than this."""
 
 HIGHEST_OF_BASE = 4
-"""The highest power of a base that is compared with another base."""
+"""The largest n for which symrot tests whether the base of one power is the n-th power of the base of another, as
+``1 - cos(x)**2`` is the second power of sin(x)."""
 
 MOST_POINTS = 500
 MOST_BASES = 12
 VALUES = tuple(Rational(n, d) for n, d in ((1, 1), (0, 1), (-1, 1), (2, 1), (-2, 1), (1, 2), (1, 3)))
-"""Values of symbols at which sides are compared."""
+"""Values that symbols get in the search for a point at which the sides differ."""
 
 LONGEST_WHOLE_NUMBER = 40
 """The largest number of digits of a whole number that is written exactly."""
 
 DIGITS_WRITTEN = (10, 20, 30, 40, 50)
-"""Numbers of digits for a pair of values, from which the first is used that shows a difference."""
+"""Numbers of digits to which the values of both sides at a counterexample are written: the first number is used with
+which the two texts differ."""
 
 
 # -- the degree of formulas -------------------------------------------------------------------------------------------
@@ -61,8 +63,10 @@ def _size(formula: Expr) -> int:
 
 
 def _base_multiples(formulas: Sequence[Expr]) -> Mapping[Expr, Fraction]:
-    """Return {x: 1/2} for formulas with sin(x/2) and sin(3*x): the largest number of which all factors of x are
+    """Return, for each quantity in arguments of functions, the largest number of which all its coefficients are
     multiples.
+
+    The formulas sin(x/2) and sin(3*x) give {x: 1/2}.
     """
     arguments = {
         node.args[0]
@@ -77,7 +81,7 @@ def _base_multiples(formulas: Sequence[Expr]) -> Mapping[Expr, Fraction]:
 def _degree(node: Expr, known: dict[Expr, int], bases: Mapping[Expr, Fraction]) -> int:
     """Return an upper bound on the degree of a formula's numerator plus that of its denominator.
 
-    ``known`` stores results; ``bases`` are those of :func:`_base_multiples`.
+    ``known`` stores results; ``bases`` is a result of :func:`_base_multiples`.
     """
     if node not in known:
         below = [_degree(part, known, bases) for part in node.args]
@@ -95,16 +99,18 @@ def _degree(node: Expr, known: dict[Expr, int], bases: Mapping[Expr, Fraction]) 
 
 
 def _angle_degree(argument: Expr, bases: Mapping[Expr, Fraction]) -> int:
-    """Return roughly the degree of the sine of ``argument`` in sines and cosines of symbols: 3 + 2 for 3*x + y/2."""
+    """Return roughly the degree of the sine of ``argument`` in sines and cosines of symbols, or of their multiples b*x.
+
+    ``bases`` maps x to b. A term c*x of the argument adds c/b. If ``bases`` lacks x, a term ``(p/q)*x`` adds p*q:
+    ``3*x + y/2`` gives 3 + 2.
+    """
     total = 0
     for term in argument.as_ordered_terms() if argument.is_Add else [argument]:
         number, atom = term.as_coeff_Mul()
         constant = atom is pi and cyclotomic.needs_cyclotomic_field(int(number.q))
         if atom in bases and number.is_Rational:
-            # where sin(y/2) already replaces sin(y), so that y is mapped to 1/2, c*y adds 2*c
             total += abs(int(Fraction(int(number.p), int(number.q)) / bases[atom]))
         else:
-            # (p/q)*x adds p*q: 3 for 3*x, 2 for y/2
             total += abs(int(number.p)) * int(number.q) if number.is_Rational and not constant else 1
     return total
 

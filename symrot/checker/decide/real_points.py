@@ -1,6 +1,6 @@
 """Exact real points that obey constraints: rational points first, then points with algebraic coordinates.
 
-A point is drawn at random, equation by equation. An equation is solved if it is linear in an unknown, a quadric, a
+A point is chosen at random, equation by equation. An equation is solved if it is linear in an unknown, a quadric, a
 polynomial in one unknown, or a product; otherwise an unknown gets a simple value. Every point is checked exactly.
 """
 
@@ -21,28 +21,33 @@ __all__ = ["ATTEMPTS", "RealPoint", "real_points"]
 
 ATTEMPTS = 120
 RATIONAL = 60
-"""The default number of drawings of a point, and the number of them before irrational roots are allowed."""
+"""ATTEMPTS is the default number of attempts to find a random point; in the first RATIONAL of them, all values are
+rational."""
 
 MOST_STEPS = 60
 MOST_TERMS = 300
-"""The largest number of steps of one drawing, and of terms in one of its equations."""
+"""MOST_STEPS is the largest number of steps in one attempt to find a point, MOST_TERMS the largest number of terms in
+an equation that is still to be solved."""
 
 MOST_BARREN = 3
-"""The number of failures after which a quadric is not tried any more."""
+"""The number of failures to find an allowed point on a quadric, after which its equation is not solved as a quadric
+again."""
 
 LARGEST_EXTENSION = 8
-"""The largest degree of a field of algebraic numbers."""
+"""The largest degree of a field of algebraic numbers over the rationals."""
 
 LARGEST_NORM, MOST_NORMS = 24, 400
-"""The largest norm of a polynomial that is factored over such a field, and the largest sum of norms in a search.
+"""The largest norm of a polynomial that is factored over a field of algebraic numbers, and the largest sum of the norms
+of all polynomials that one search factors over such fields.
 
-The norm is the degree of the polynomial times the degree of the field. A norm of 24 takes a fifth of a second, a
-norm of 64 six seconds.
-"""
+The norm is the degree of the polynomial times the degree of the field. A norm of 24 takes a fifth of a second, a norm
+of 64 six seconds."""
 
 
 class _DeadEnd(Exception):
-    """Exception raised while a point is drawn, if the values chosen so far leave no value for another unknown."""
+    """Exception raised if an attempt to find a point fails: the values chosen so far leave no allowed value for another
+    unknown, or the computation becomes too long.
+    """
 
 
 @dataclass(frozen=True)
@@ -143,7 +148,9 @@ class _Drawing:
         raise _DeadEnd
 
     def completed(self) -> RealPoint:
-        """Return the finished point: free unknowns get values, then the unknowns that equations were solved for."""
+        """Return the finished point: first free unknowns get values, then the unknowns for which equations were
+        solved.
+        """
         later = {place for place, _, _ in self.solved}
         for place in sorted(self.constraints.free - later - self.values.keys()):
             self.values[place] = self.field.convert(self.drawn(place), QQ)
@@ -181,9 +188,9 @@ class _Drawing:
     # -- steps: each returns whether it applied -----------------------------------------------------------------------
 
     def factor(self) -> bool:
-        """Replace one equation ``a*b = 0`` by ``a = 0``, for a factor drawn at random.
+        """Replace an equation ``a*b = 0`` by ``a = 0``, with a factor chosen at random; return whether there was one.
 
-        Return whether there was such an equation; False also once a value is irrational.
+        Once a value is irrational, do nothing and return False: equations are factored over the rationals only.
         """
         for number, poly in enumerate(self.zeros):
             if self.field != QQ:
@@ -197,13 +204,17 @@ class _Drawing:
         return False
 
     def substitution(self) -> bool:
-        """Solve an equation for an unknown with a number as coefficient, ``2*x + y^2 = 1`` for x; return whether there
-        was one.
+        """Solve an equation for an unknown whose coefficient is a number, as ``2*x + y^2 = 1`` for x.
+
+        Return whether there was such an equation.
         """
         return self._solve(lambda slope: slope.is_ground)
 
     def fraction(self) -> bool:
-        """Solve an equation that is linear in an unknown, ``y*x + z = 1`` for x; return whether there was one."""
+        """Solve an equation that is linear in an unknown for it, as ``y*x + z = 1`` for x.
+
+        Return whether there was such an equation.
+        """
         return self._solve(lambda slope: True)
 
     def _solve(self, fits: Callable[[PolyElement], bool]) -> bool:
@@ -239,7 +250,7 @@ class _Drawing:
     def quadric(self) -> bool:
         """Choose a rational point that solves an equation of degree 2 in several unknowns, as ``x^2 + y^2 = 1``.
 
-        Return whether one was chosen.
+        Return whether a point was chosen.
         """
         if self.field != QQ:
             return False
@@ -362,4 +373,5 @@ _ORDERS: tuple[Sequence[_Step], ...] = (
     (_Drawing.factor, _Drawing.univariate, _Drawing.quadric, _Drawing.substitution, _Drawing.guess),
     (_Drawing.factor, _Drawing.univariate, _Drawing.guess),
 )
-"""Orders of steps, one of which is drawn for each attempt: most systems can be solved in at least one of them."""
+"""Lists of steps by which the equations for a point are solved. Each attempt chooses a list at random and repeats its
+first step that applies; most systems of equations can be solved with at least one of the lists."""

@@ -35,13 +35,12 @@ MUCH_LARGER = 5
 """A formula with more than this many times the symbols and operations of another is taken to have the longer text."""
 
 MOST_PIECES = 60
-"""A sum that must be nonzero is simplified, to see if the other conditions imply it, if it has fewer symbols and
-operations than this.
-"""
+"""A sum that must be nonzero is simplified only if it has fewer symbols and operations than this. The simplified sum
+may show that the condition always holds, or that another condition implies it."""
 
 MOST_LETTERS_OF_CONDITION = 80
-"""A condition on signs with more characters is replaced by the range of an inverse function that says the same, if any.
-"""
+"""A condition on signs whose text has more characters than this is replaced by an equivalent range, such as
+``-pi/2 <= asin(x) + asin(y) <= pi/2``, if one is known."""
 
 
 @dataclass
@@ -135,8 +134,10 @@ def nonzero_by_hypothesis(case: ClaimCase) -> None:
 
 
 def domain_of_text(case: ClaimCase) -> None:
-    """Add the divisors of a claim's text to the ring; raise InputError if the sides are provably real nowhere."""
-    # the proof must not lose the condition that they are nonzero
+    """Add the divisors of a claim's text to ``case.ring``, so that a proof has the condition that they are nonzero.
+
+    Raise InputError if the sides are provably real nowhere, or if a hypothesis provably holds nowhere.
+    """
     for divisor in case.equation.divisors:
         case.ring.ratios.invert(case.ring.ratio(divisor), divisor)
     case.hypotheses.refuse_if_nowhere()
@@ -258,16 +259,16 @@ def _shorter(first: Expr, second: Expr) -> Expr:
 def _branches(
     ring: FormulaRing, numerators: Sequence[PolyElement]
 ) -> tuple[list[Requirement] | None, tuple[FormulaRing, ...]]:
-    """Return the conditions on signs that make a claim true, such as ``x >= 0``, and the larger rings of the proof.
+    """Return the conditions on signs that make a claim true, such as ``x >= 0``, and further rings that the proof uses.
 
-    The conditions are [] if none is needed, and None if none is known.
+    The conditions are [] if none is needed, and None if none is known. A further ring extends ``ring``, for example by
+    the angle of an arcsine; its divisors become conditions of the claim too.
     """
     try:
         branches = branch_requirements(ring, numerators) if ring.roots else None
     except TooLarge:
         return None, ()
     if branches is None and len(numerators) == 1:
-        # a proof may need a larger ring, for example with the angle of an arcsine; its divisors become conditions too
         for lift in lifts(ring, numerators[0]):
             branches = branch_requirements(lift.ring, [poly for poly in lift.numerators if poly])
             if branches is not None:

@@ -19,20 +19,22 @@ __all__ = ["PRIME", "Fingerprint", "NotInField", "Values", "fingerprint", "in_lo
 PRIME = 2**61 - 1  # different functions agree at a random point with a probability of 1e-18
 """A prime that is 3 modulo 4: the circle then has no points at infinity, and one power gives a square root."""
 DRAWS = tuple((pow(3, 101 + 2 * n, PRIME), pow(3, 102 + 2 * n, PRIME)) for n in range(48))
-"""(value of one symbol, value of all others), tried in turn until the formula is defined."""
+"""Pairs (value of one symbol, value of all other symbols), tried in turn until the formula is defined."""
 MOST_UNDEFINED = 3
-"""The number of pairs in DRAWS that are tried. A formula without a value at any of them, such as 1/(x - y), has no
-value where two symbols are equal.
+"""The number of pairs in DRAWS that are tried for one formula. All symbols but one are equal then; so a formula without
+a value for any of these pairs, such as x/(A - B), probably has none wherever two symbols are equal.
 """
 PARTS = 4
-"""Sine and cosine of a symbol are computed from those of its quarter, so that half and quarter angles have values too.
-"""
+"""cos(x) and sin(x) are computed from cos(x/4) and sin(x/4), so that half and quarter angles have values too."""
 MOST_CANCELLED = 10
-"""The fractions of a formula with more atoms are not cancelled: for the inverse of a tensor this would take seconds."""
+"""The largest number of atoms in a formula whose fractions are cancelled. For the inverse of a tensor, which has more,
+this would take seconds.
+"""
 LARGEST_MULTIPLE = 400
-"""The largest multiple of a quarter angle, and the largest exponent, that is evaluated."""
+"""The largest n for which cos(n*x/4), sin(n*x/4) and x**n are evaluated; beyond it, a formula has no fingerprint."""
 
 Values = tuple[int, ...]
+"""The values of a formula's entries modulo ``PRIME``."""
 
 
 class NotInField(Exception):
@@ -144,15 +146,20 @@ def _added(first: tuple[int, int], second: tuple[int, int]) -> tuple[int, int]:
 
 @dataclass(frozen=True)
 class Fingerprint:
-    """The atoms (symbols, functions, derivatives) of a formula, each with its signature (see the file's heading)."""
+    """The atoms (symbols, functions, derivatives) of a formula, each with its signature.
+
+    The signature of an atom is the values of the formula's entries where the atom has one number and all other atoms
+    have another number.
+    """
 
     atoms: tuple[Expr, ...]
     signatures: tuple[Values, ...]
     idle: tuple[Expr, ...] = ()  # atoms in the formula that do not change its value
 
     def rows(self, order: Sequence[int]) -> list[Values]:
-        """Return the signatures with their entries in ``order``, all divided by one number: the formulas x and 2*x have
-        the same rows.
+        """Return each atom's signature with its values in ``order``, and all values divided by one common number.
+
+        Thus the formulas x and 2*x have the same rows.
         """
         total = [sum(column) % PRIME for column in zip(*self.signatures, strict=True)]
         # the first entry whose values have a nonzero sum
@@ -168,7 +175,9 @@ class Fingerprint:
 
 
 def fingerprint(entries: Sequence[Expr]) -> Fingerprint:
-    """Return the fingerprint of a formula with these ``entries`` (see the heading of the file).
+    """Return the fingerprint of a formula: its atoms, each with a signature that does not depend on their names.
+
+    ``entries`` are the entries of a matrix, or the one entry of a scalar formula.
 
     Raises
     ------
@@ -225,9 +234,9 @@ def _misses(rest: Expr, divisor: Expr, point: Mapping[Expr, int]) -> bool:
 
 
 def _from_one_draw(entries: Sequence[Expr], written: Sequence[Expr]) -> Fingerprint | None:
-    """Return the fingerprint of the formula ``entries`` with the atoms ``written``, from one pair of numbers.
+    """Return the fingerprint of the formula ``entries`` with the atoms ``written``, from the first pair in DRAWS.
 
-    None if other numbers must be tried.
+    Return None if the formula has no value there, or does not change with one of its atoms: others must be tried.
     """
     raised, others = DRAWS[0]
     point = dict.fromkeys(written, others)
@@ -244,10 +253,14 @@ def _from_one_draw(entries: Sequence[Expr], written: Sequence[Expr]) -> Fingerpr
 
 
 def _sum_over_pairs(entries: Sequence[Expr], atom: Expr, atoms: Sequence[Expr], written: Sequence[Expr]) -> Values:
-    """Return the signature of ``atom`` for a formula that is undefined where two atoms are equal, such as x/(A - B)."""
+    """Return the signature of ``atom`` for a formula that is undefined where two atoms are equal, such as x/(A - B).
+
+    It is a sum of values of the formula: for each other atom in ``atoms``, on which the formula depends, the value
+    where ``atom`` and this other atom have numbers of their own. All other atoms in ``written`` have a third number.
+    """
     raised, others = DRAWS[0]
     second, _ = DRAWS[1]
-    # one point for each other atom: it has the second number, all the rest the third
+    # one point for each other atom
     points = (dict.fromkeys(written, others) | {atom: raised, other: second} for other in atoms if other != atom)
     defined = [values for point in points if (values := _defined(entries, point)) is not None]
     if not defined:

@@ -187,7 +187,8 @@ def identified(
         The name that the claim gives to the value. If there is one, the renaming must not mix up axes:
         if I_1 stands for the moment about some axis, omega_1 must be the component along the same axis.
     fits : function
-        Tells whether a claim may mean an identification, by its units and names; others are left out.
+        Takes a known formula, as Identification; tells whether the author of a claim can mean it, judged by units and
+        names. The formulas that cannot be meant are left out.
     """
     entries, shape = flatten(value)
     try:
@@ -288,7 +289,7 @@ def _matched(
     quantity : str or None
         The name that the claim gives to the formula.
     fits : function
-        Tells whether a claim may mean an identification, by its names, units and context.
+        Takes an identification; tells whether the author of a claim can mean it, judged by names, units and context.
     """
     theirs, print_of = _known_entries(known.text)
     ordered = [entries[n] for n in view.order]
@@ -366,17 +367,20 @@ def _factor_text(factor: Rational) -> str:
 
 
 def _factor(
-    theirs: Sequence[Expr],
-    own: Sequence[Expr],
-    pairing: dict[Expr, Expr],  # known symbol -> symbol of the claim
+    known: Sequence[Expr],  # the entries of a known formula
+    own: Sequence[Expr],  # the entries of the claim's formula, in the same order
+    pairing: dict[Expr, Expr],  # symbol of the known formula -> symbol of the claim
     idle: Sequence[Expr],  # symbols in own that do not change its value
     factors: Sequence[Rational],
 ) -> Rational | None:
-    """Return the first k in ``factors`` with own = k * theirs at a test point, or None if there is none."""
+    """Return the first k in ``factors`` with own = k * known at a test point.
+
+    Return None if no factor fits, or if none of the test points gives both formulas a value.
+    """
     for draw in range(MOST_DRAWS):
         point = {mine: pow(7 + 2 * draw, 40 + n * n, PRIME) for n, mine in enumerate(pairing)}
         try:
-            left = values_at(theirs, point)
+            left = values_at(known, point)
             placed = {pairing[mine]: value for mine, value in point.items()}
             right = values_at(own, placed | dict.fromkeys(idle, draw + 11))
         except NotInField:

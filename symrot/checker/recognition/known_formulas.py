@@ -30,8 +30,10 @@ __all__ = ["FILE", "Known", "by_fingerprint", "derived", "ending_of", "page", "r
 FILE = Path(__file__).with_name("known_formulas.toml")
 
 LONGEST = 6000
+"""The largest number of characters in a formula with a name of its own in ``known_formulas.toml``."""
+
 LONGEST_DERIVED = 900
-"""The largest number of characters in a stored formula: in one with a name of its own, and in a side of a step."""
+"""The same for a formula that is only a side of a step in a derivation."""
 
 
 @dataclass(frozen=True)
@@ -42,7 +44,7 @@ class Known:
     source: str
     text: str
     scaled: bool = False  # multiples of the formula have the same name
-    only_named: bool = False  # such as C*omega_3: only for a named quantity, in the letters of books
+    only_named: bool = False  # such as C*omega_3: a claim must name it, L = .., and use the letters of books
     is_relation: bool = False  # the left side of an equation minus the right side
 
     @property
@@ -96,9 +98,12 @@ def stated() -> Iterator[Named]:
 COMPONENTS = {(3, 1): ("first", "second", "third"), (4, 1): ("scalar", "first", "second", "third")}
 """Shape of a column -> the names of its components; a quaternion begins with the scalar."""
 LEAST_OF_RELATION = 3
-"""The smallest number of symbols in a relation that is stored."""
+"""The smallest number of symbols in a relation of mechanics in ``known_formulas.toml``."""
 LEAST_OF_COMPONENT = 3
-"""The smallest number of symbols in a component that is stored by itself: a shorter one could mean many formulas."""
+"""The smallest number of symbols in a vector's component that is a formula of its own in ``known_formulas.toml``.
+
+A shorter one could mean many formulas.
+"""
 
 
 def derived() -> Iterator[Named]:
@@ -125,14 +130,14 @@ def _related() -> Iterator[Named]:
 
 
 SCALAR_PRODUCTS = ("power of a torque", "kinetic energy from the angular momentum")
-"""Formulas of the form a . b, which is a formula of mechanics only if the letters say so."""
+"""Names of formulas of the form a . b; a claim means one only with the letters that books use for these vectors."""
 
 
 def _selected(
     formulas: Iterator[Named],
     least: int,
     longest: int,
-    is_relation: bool = False,  # stored too: relations are looked up for equations only
+    is_relation: bool = False,  # kept in each formula: relations are looked up for equations only
 ) -> Iterator[tuple[str, Known]]:
     """Yield (key, formula) for formulas with at least ``least`` symbols and at most ``longest`` characters."""
     general = (*GENERAL, *OF_ONE_ENTRY)
@@ -167,7 +172,10 @@ def ending_of(name: str) -> str:
 
 
 def relation_key(key: str, is_relation: bool) -> str:
-    """Return the key of a formula in the file: its fingerprint ``key``, with ``=`` in front for a relation."""
+    """Return the key of a formula in ``known_formulas.toml``: its ``key``, with ``=`` in front for a relation.
+
+    ``key`` is the hash of its fingerprint.
+    """
     return f"={key}" if is_relation else key
 
 

@@ -22,10 +22,13 @@ CYCLIC = ((1, 2, 3), (2, 3, 1), (3, 1, 2))
 COMPONENTS = {"first": "1", "second": "2", "third": "3", "scalar": "0"}
 
 RATE = re.compile(r"diff\((.+?)(?:, t)+\)|(.+)\(t\)|(\w+?)_d*dot|d{1,2}(phi|theta|psi|omega_[1-3]|q[0-3]|L_[1-3])")
-"""A rate, or a value in time, as text; its group is the name of the quantity."""
+"""Pattern of the text of a rate or function of time: ``diff(phi(t), t)``, ``phi(t)``, ``phi_dot``, ``dphi``.
+
+The one group that matches is the quantity, phi or ``phi(t)``.
+"""
 
 ENTRY = re.compile(r"[RrACc]_?([1-3])([1-3])")
-"""An entry of a rotation matrix; its groups are the row and the column."""
+"""Pattern of the name of an entry of a rotation matrix; its groups are the row and the column."""
 
 EARLIER_AND_LATER = (("omega_i", "omega_f"), ("theta_i", "theta_f"))
 """Pairs of names in known formulas for one quantity, at an earlier and at a later time."""
@@ -68,7 +71,11 @@ def _pair_of_quantities(known: str, new: str) -> tuple[str, str]:
 
 @cache
 def _orders(known: str, new: str) -> tuple[frozenset[tuple[int, ...]], frozenset[tuple[int, ...]]]:
-    """Return the orders of the axes with which ``known`` may become ``new``, and those if matrices are transposed."""
+    """Return (orders, orders for a transposed matrix): those in CYCLIC that turn the axes of ``known`` into ``new``'s.
+
+    The order (2, 3, 1) turns omega_1 into omega_2, and R_12 into R_23 or, in a transposed matrix, into R_32. A name
+    without axes allows all orders.
+    """
     axes, own = axes_of(known), axes_of(new)
     moved_axes = {order: {order[axis - 1] if axis else 0 for axis in axes} for order in CYCLIC}
     possible = [order for order in CYCLIC if not axes or not own or moved_axes[order] == own]

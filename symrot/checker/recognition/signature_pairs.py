@@ -14,7 +14,10 @@ from symrot.exact.printing import as_text
 __all__ = ["MOST_TRIES", "name_of", "pairings"]
 
 MOST_TRIES = 720
-"""The largest number of ways to pair the symbols of equal signatures that are tried."""
+"""The largest number of ways to pair the symbols of two formulas that are tried.
+
+Only symbols with equal signatures, which :class:`Fingerprint` describes, can be paired.
+"""
 
 
 @lru_cache(maxsize=4096)  # thousands of renamings of one claim need the same texts

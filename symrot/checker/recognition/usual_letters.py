@@ -4,12 +4,12 @@ import re
 from functools import lru_cache
 
 from symrot import symbols
-from symrot.checker.recognition.formulas.new_symbols import OTHERS
+from symrot.checker.recognition.formulas.new_symbols import UNIT_OF_SYMBOL
 from symrot.checker.units.units import conventional_unit
 
 __all__ = ["LETTERS", "UNIT_OF_NAME", "agree_in_unit", "has_usual_letter", "plain_name", "unit_of"]
 
-UNIT_OF_NAME = {symbol.name: unit for symbol, unit in (symbols.UNIT | OTHERS).items()}
+UNIT_OF_NAME = {symbol.name: unit for symbol, unit in (symbols.UNIT | UNIT_OF_SYMBOL).items()}
 """Name of a symbol in known formulas -> its unit."""
 
 LETTERS = {

@@ -164,7 +164,11 @@ class Conditions:
         }
 
     def _simpler(self, entry: tuple[Mapping[Expr, int], int, str]) -> tuple[Mapping[Expr, int], int, str] | None:
-        """Return a condition on a product without factors of known sign; None if it always holds or becomes a range."""
+        """Return a condition on a product without factors of known sign; None if the condition is no longer needed.
+
+        A condition is not needed if it always holds, or after it was added to ``ranges``: ``2*x - pi >= 0`` as x >=
+        pi/2.
+        """
         # ({x: 1, y: 1}, -1, ">= 0") is -x*y >= 0
         factors, direction, sign = entry
         bounds = {factor: bound_of(factor) for factor in factors}
@@ -216,15 +220,16 @@ class Conditions:
         return True
 
     def _excludes(self, formula: Expr) -> bool:
-        """Return whether the ranges keep ``formula`` from zero; for the formula x, a range x >= 0 first becomes x >
-        0.
+        """Return whether ranges and products say that ``formula``, which must not be zero, is nonzero.
+
+        If the zero of the formula is an end of a range, this end is first excluded: for the formula x, ``x >= 0``
+        becomes ``x > 0``.
         """
         bound = bound_of(formula)
         if bound.root == 0 and isinstance(bound.quantity, sin | cos) and self._angle_excludes(bound.quantity):
             return True
         if any(self._lies_between(bound, factors, direction) for factors, direction, _ in self.products):
             return True
-        # x >= 0 becomes x > 0
         own = self.ranges.get(bound.quantity)
         if own is None:
             if not isinstance(bound.quantity, sin | cos):
@@ -239,20 +244,22 @@ class Conditions:
         return bool(own.sign_of(bound.root)[0])
 
     def _lies_between(self, bound: Bound, factors: Mapping[Expr, int], direction: int) -> bool:
-        """Return whether ``(x - 1)*(x + 1) >= 0``, given by ``factors`` and ``direction``, excludes the root of
-        ``bound``, x = 0.
+        """Return whether a condition such as ``(x - 1)*(x + 1) >= 0`` excludes the root of ``bound``, here x = 0.
+
+        That is so if the product has two factors in the same quantity, and the root lies between their roots, where the
+        condition fails. The condition is on ``direction``, 1 or -1, times the product of ``factors``.
         """
         pair = [bound_of(factor) for factor in factors]
         if len(pair) != 2 or any(other.quantity != bound.quantity for other in pair):
             return False
-        # the condition excludes all points between the roots of both factors
         outside = direction * pair[0].slope * pair[1].slope > 0
         return outside and bool(((bound.root - pair[0].root) * (bound.root - pair[1].root)).is_negative)
 
     def grants(self, quantity: Expr, own: Range) -> bool:
-        """Return whether a cosine is in the range ``own`` by other conditions, so that the range need not be printed.
+        """Return whether other conditions than ``ranges`` imply that a cosine is in the range ``own``.
 
-        False for other quantities.
+        Then this range need not be printed. For instance, cos(u) > -1 holds if cos(u/2) must not be zero. False if
+        ``quantity`` is no cosine.
         """
         if not isinstance(quantity, cos):
             return False

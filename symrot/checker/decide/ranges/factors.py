@@ -1,5 +1,7 @@
-"""One condition on the sign of a formula in factors: each factor in the form ``slope * (quantity - root)``, or always
-positive.
+"""Splitting a formula into factors, so that a condition on its sign can be simplified.
+
+A factor such as ``2*x - pi`` is written as ``slope * (quantity - root)`` up to a positive number; a factor that is
+always positive does not matter.
 """
 
 from dataclasses import dataclass

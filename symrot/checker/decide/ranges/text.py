@@ -54,7 +54,8 @@ def condition_texts(conditions: Iterable[Any]) -> tuple[str, ...]:
 
 
 _EMPTY_RANGE = re.compile(r"^(.+) < (\w+) < \1$")
-"""A range without a number, such as ``0 < x < 0``, which is easier to read as two conditions."""
+"""Pattern of a range that contains no number, such as ``0 < x < 0``: two conditions, ``x < 0 and x > 0``, are easier
+to read."""
 
 
 def positive_symbols(conditions: Iterable[Any]) -> dict[Expr, Expr]:

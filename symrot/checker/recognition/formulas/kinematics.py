@@ -35,7 +35,10 @@ UNIT, PARAMETERS, RELATIVE, COMPOSITION, RODRIGUES, MOMENTUM, ENERGY, POWER, WHE
 PITCH = "pitch angle of a rotation matrix, asin"
 SECOND_ANGLE_OF_MATRIX = "second angle of ZXZ, and of ZYZ, of a rotation matrix, acos"
 OF_ONE_ENTRY = (PITCH, SECOND_ANGLE_OF_MATRIX)
-"""Angles that one entry of a matrix gives; only the name and the place of the entry say what is meant."""
+"""Names of the angles that one entry of a rotation matrix gives, as R_33 the second angle of ZXZ.
+
+Any single letter equals such a formula; so a claim means the angle only if its letter is named as an entry, R_33.
+"""
 
 GYROSCOPE = "torque on a gyroscope whose axis precesses"
 

@@ -4,18 +4,18 @@ from sympy import Symbol
 
 __all__ = [
     "AFTER", "ALPHA", "BEFORE", "DISTANCE", "END", "ENERGY", "FALL", "GYRATION", "LENGTH", "MOMENTUM_RATE",
-    "MOMENTUM_RATES", "ONE_FORCE", "ONE_MOMENTUM", "OTHERS", "PERIOD", "POINT_MOMENTUM", "PULLEY", "SLOPE", "SPEED",
-    "START", "STIFFNESS", "TENSION", "TILT", "TIME", "TORQUE", "WHEEL_MOMENTUM", "WORK",
+    "MOMENTUM_RATES", "ONE_FORCE", "ONE_MOMENTUM", "PERIOD", "POINT_MOMENTUM", "PULLEY", "SLOPE", "SPEED", "START",
+    "STIFFNESS", "TENSION", "TILT", "TIME", "TORQUE", "UNIT_OF_SYMBOL", "WHEEL_MOMENTUM", "WORK",
 ]  # fmt: skip
 
-OTHERS: dict[Symbol, str] = {}
-"""The symbols below, with their units."""
+UNIT_OF_SYMBOL: dict[Symbol, str] = {}
+"""Symbol of this module -> its unit; a few units have a remark, as in "N, of a string" for a tension."""
 
 
 def _new(name: str, unit: str) -> Symbol:
     """Create a real symbol, record its unit, and return it."""
     symbol = Symbol(name, real=True)
-    OTHERS[symbol] = unit
+    UNIT_OF_SYMBOL[symbol] = unit
     return symbol
 
 

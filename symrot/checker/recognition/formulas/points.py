@@ -28,10 +28,16 @@ TORQUE, OF_POINT, BY_MOMENTUM = (
 )  # fmt: skip
 WORK = "work of a force"
 ANY_VECTORS = (TORQUE, OF_POINT, BY_MOMENTUM, WORK)
-"""Products of any two vectors: they are formulas of mechanics only in the letters that books use."""
+"""Names of the formulas that are a product of two vectors, such as r x F.
+
+Every cross or dot product has this form; so a claim means such a formula only with the letters that books use for it.
+"""
 
 GENERAL = ("torque by the rate of the angular momentum", "torque by the rate of the angular momentum about one axis")
-"""Formulas that are one symbol, or a vector of symbols: they too are formulas of mechanics in usual letters only."""
+"""Names of the formulas that are one symbol, or a vector of three symbols.
+
+Every letter equals such a formula; so a claim means it only with the letters that books use for it.
+"""
 
 
 def points() -> Iterator[Named]:

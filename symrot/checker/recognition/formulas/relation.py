@@ -18,8 +18,10 @@ class Relation(NamedTuple):
 
 
 def solved(relation: Relation) -> Iterator[tuple[str, str, Any]]:
-    """Solve a relation for each symbol in ``relation.words``: yield (name, derivation page, formula for the symbol or
-    its square). Skip other powers.
+    """Solve a relation for each symbol in ``relation.words``; yield (name, derivation page, formula) for each symbol.
+
+    If the relation has only the square of a symbol, the formula is for the square, and its name ends with ", squared".
+    Symbols in higher powers, or in first power and square, are skipped.
     """
     numerator = fraction(together(relation.difference))[0]
     for symbol, words in relation.words.items():

@@ -47,7 +47,10 @@ HEAVY, FREE, WHEEL, EULER, AXIS = (
 
 
 def relations() -> Iterator[Relation]:
-    """Yield all relations in a fixed order."""
+    """Yield the relations of mechanics from this module and from ``plane_relations``, in a fixed order.
+
+    They are about rotation about one axis, rolling, pendulums, tops, free bodies, wheels and aircraft.
+    """
     for group in (one_axis, rolling, pendulums, _steady, _heavy, _free, _planar, _aircraft, _wheel, _trace):
         yield from group()
 

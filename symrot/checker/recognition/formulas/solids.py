@@ -1,4 +1,8 @@
-"""Inertia tensors of the standard solids about their special points, and moments of thin and stretched bodies."""
+"""Inertia tensors of the standard solids about special points, and moments of inertia of a few other bodies.
+
+Special points are the centre of mass, a tip, a corner; the other bodies are an annulus, a thin tube, a conical shell,
+and an elliptical disk and cylinder, which are stretched circular ones.
+"""
 
 from collections.abc import Iterator, Sequence
 
@@ -55,7 +59,10 @@ def _stretched(body: Solid, factors: Sequence[Expr]) -> Matrix:
 
 
 def thin_bodies() -> Iterator[Named]:
-    """Yield the moments of bodies that are limits of solids, made of rings, or stretched: annulus, elliptical disk."""
+    """Yield the moments of inertia of an annulus, a thin tube, a conical shell, and an elliptical disk and cylinder.
+
+    The first two are limits of a hollow cylinder, the shell is made of rings, the last two are stretched circular ones.
+    """
     inner, outer, length, mass = (Symbol(name, positive=True) for name in ("R_1", "R_2", "L", "m"))
     hollow = solid("hollow_cylinder")
     tensor_of = hollow.inertia_about(tuple(hollow.center_of_mass))

@@ -24,10 +24,10 @@ from symrot.checker.verdict import Diagnosis, Identification, Repair, Verdict
 __all__ = ["doubtful", "readings_by_other_products", "recognised_edits", "verdict_by_edit"]
 
 MOST_EDITS = 400
+"""The largest number of edits of a formula that are looked up among the known formulas."""
+
 MOST_NODES = 400
-"""The largest number of edits that are looked up, and the largest number of symbols and operations in a formula that is
-edited.
-"""
+"""The largest number of symbols, numbers and operations in a formula that is edited."""
 
 PLUS_PRODUCTS = "for products of inertia without the minus sign, I_xy = integral of x*y dm"
 
@@ -128,7 +128,10 @@ def _exchanged(tree: Node, names: Mapping[str, str]) -> Node:
 
 
 def _with_all_terms_added(named: NamedFormula) -> Iterator[Edit]:
-    """Yield the edit to ``a + b + c`` of the formula ``a - b - c`` if the other side is a number."""
+    """Yield one edit, ``a + b + c``, for a claim ``a - b - c = 0``, with several minus signs and a number on one side.
+
+    Yield nothing for other claims.
+    """
     negative = [term for term in named.formula.args if term.kind == "neg"]
     if named.solve is None and named.side.kind == "number" and named.formula.kind == "sum" and len(negative) > 1:
         added = sum_of([term.args[0] if term.kind == "neg" else term for term in named.formula.args])

@@ -37,7 +37,9 @@ SURE_IF_STATED = ("sin_cos_swap", "half_angle", "double_half_angle", "exponent")
 """Codes of the faults that are evident if the context states what the letters of the formula mean."""
 
 OF_ANGLES = re.compile(r"angle rates of|angular velocity of [xyzXYZ]{3}\b")
-"""Pattern of names of known formulas in Euler angles: books print no special case in which two of the angles are equal.
+"""Pattern of the names of known formulas in Euler angles.
+
+A claim near one of these is never taken for a special case with two equal quantities, since books print none.
 """
 
 
@@ -200,15 +202,19 @@ def _is_entry_of_matrix(named: NamedFormula, near: Near) -> bool:
 
 
 def _is_angle_of_entries(named: NamedFormula, near: Near) -> bool:
-    """Return whether a claim gives an angle by three or more entries of a matrix, and ``near`` is such an angle."""
+    """Return whether a claim gives a formula of three or more entries of a rotation matrix, and no other letters.
+
+    ``near`` must be a formula for an angle of such a matrix.
+    """
     letters = names_in(named.formula)
     is_of_entries = len(letters) >= LEAST_SYMBOLS_EDITED and all(re.fullmatch(ENTRY, letter) for letter in letters)
     return is_of_entries and re.search(r"angle .*of a rotation matrix", near.known.name) is not None
 
 
 def _is_component_of_parameters(named: NamedFormula, near: Near) -> bool:
-    """Return whether a claim is for a component of Rodrigues parameters, as ``sigma_1`` is, from those of a quaternion,
-    as beta_1 and beta_0 are, and ``near`` is a formula for this component.
+    """Return whether a claim gives a component of Rodrigues parameters by a quaternion: sigma_1 by beta_0 and beta_1.
+
+    ``near`` must be a formula for the same component. The letters of the quaternion must have one stem, such as beta.
     """
     place = re.fullmatch(r"[a-z]+_?([1-3])", named.name)
     word, _, rest = near.known.name.partition(" component of the ")

@@ -28,27 +28,35 @@ CENTRE, POINT = re.compile(r"[IJk]_?(bar|G|C|cm|c|S)"), re.compile(r"[IJk]_?[OAP
 MOMENTA = {"phi": "precession", "theta": "nutation", "psi": "spin"}
 """Angle of ZXZ -> the word for its momentum in the names of known formulas."""
 
-MOMENT, KNOWN_MOMENT = re.compile(r"[IJ](_?\w+)?"), re.compile(r"[ABCIJ](_?\w+)?")
-"""Pattern of names that mean a moment of inertia whatever the claim, and of its names in known formulas."""
+MOMENT = re.compile(r"[IJ](_?\w+)?")
+"""Pattern of the names that mean a moment of inertia in every claim, such as I_1."""
+
+KNOWN_MOMENT = re.compile(r"[ABCIJ](_?\w+)?")
+"""Pattern of the symbols of moments of inertia in symrot's known formulas, such as A and I_1."""
 
 RATE_OF_ANGLE = re.compile(rf"diff\(({'|'.join(ANGLES)}|varphi|vartheta)\(t\), t\)")
+"""Pattern of the rate of an angle in a claim, ``diff(phi(t), t)``."""
+
 KNOWN_RATE = re.compile(r"d[a-z]+(_?\w+)?|(omega|Omega|w|n)(_?\w+)?")
-"""Rates of angles in claims, and symbols of known formulas that they may stand for."""
+"""Pattern of the symbols of known formulas for which the rate of an angle may stand, such as dphi and omega_3."""
 
 RATES = {"precession": "dphi", "nutation": "dtheta", "spin": "dpsi"}
-"""Word for the momentum of an angle -> the rate of this angle in known formulas."""
+"""Word in a known formula's name, as in "momentum of precession" -> the symbol for the rate of this angle there."""
 
 RATES_OF_TOPS = ("precession", "nutation", "frequency")
 """Words for rates of a top; a component of an angular velocity, such as omega_2 next to omega_1, is no such rate."""
 
 OTHER_LENGTHS = (("R(_[12])?", r"[dD].*|[lLhH]|ell"), ("[abcLh]", r"[rR]"))
-"""Symbols of known formulas for radii, and for lengths and sides -> letters that books use for other lengths only."""
+"""Pairs of patterns: symbols of known formulas, and letters that books never use for these symbols.
+
+A radius R is never called D, h or L; a side a or a length L is never called r.
+"""
 
 PARALLEL = re.compile("parallel.ax")
-"""A part of the names of the formulas for a parallel axis."""
+"""Pattern that occurs in the names of the formulas of the parallel-axis theorem."""
 
 OF_ROLL = re.compile(r"d?([pqr]|[Hh](_?\w+)?)")
-"""Rates of an aircraft and letters of angular momentum: beside these, L may mean a torque, the rolling moment."""
+"""Pattern of an aircraft's rates and of letters of angular momentum: beside these, L may be the rolling torque."""
 
 RATES_OF_AIRCRAFT = {"p": "x1", "q": "y2", "r": "z3"}
 """Rate of an aircraft -> the axis of this component of its angular velocity in the body frame."""

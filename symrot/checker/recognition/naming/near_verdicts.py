@@ -47,27 +47,33 @@ from symrot.exact.ring.ratio import TooLarge
 __all__ = ["MOST_PROOFS", "formulas_nearby", "nearest_verdict", "verdict_near_relation"]
 
 MOST_SOLVED = 4
-"""An equation is compared with known relations after it is solved for each letter, for at most this many letters."""
+"""The largest number of letters for which an equation is solved, each time to compare it with known relations."""
 
-PER_NAME, PER_PLACE = 0.1, 0.3
-"""The cost of each symbol that has another letter than in the known formula, and of each contradiction between the
-name of the quantity and the known formula, such as omega_3 for a first component.
-"""
+PER_NAME = 0.1
+"""What each renamed symbol adds to the cost of a known formula near a claim; the likeliest formula costs least."""
+
+PER_PLACE = 0.3
+"""What each contradiction to the quantity's name adds to this cost, such as omega_3 for a first component."""
 
 AS_NEAR = 0.15
-"""A moment about a parallel axis may cost this much more than the cheapest moment of inertia, and still be what the
-claim means.
+"""A claim that is a known moment of inertia plus m d^2 may be right for a parallel axis, and is not called faulty if
+this moment costs at most this much more than the likeliest one near the claim.
 """
 
-MOST_REPAIRS, MOST_PROOFS = 3, 12
-"""The largest number of repairs in a verdict, and of formulas near a claim for which a proof is tried."""
+MOST_REPAIRS = 3
+"""The largest number of repairs in a verdict."""
+
+MOST_PROOFS = 12
+"""The largest number of known formulas near a claim for which a proof is tried."""
 
 UPRIGHT = "for an angle from the upright position, the equation is right as it stands"
 
 
 def nearest_verdict(claim: Claim, named: NamedFormula) -> Verdict | None:
-    """Return the verdict "doubtful" if one edit makes the claim's formula or equation a known one, "recognised" if it
-    is one for certain signs of letters; otherwise None.
+    """Return the verdict "doubtful" if one edit makes the claim's formula or equation a known one.
+
+    Return "recognised" if the formula equals a known one when its letters have certain signs, such as a > 0, and None
+    in other cases.
     """
     if claim.hypotheses:
         return _near(claim, named) if _are_usable(claim) else None
@@ -94,7 +100,7 @@ def _near_inside(claim: Claim, named: NamedFormula) -> Verdict | None:
 
 
 def _near_by_quantity(claim: Claim, named: NamedFormula) -> Verdict | None:
-    """Return the verdict "doubtful" if a change of the side that is a name, such as k to k^2, gives a known formula.
+    """Return the verdict "doubtful" if a change on the side of the quantity, k to k^2 in ``k = I/m``, makes it known.
 
     Otherwise return None.
     """
@@ -121,8 +127,10 @@ def verdict_near_relation(claim: Claim) -> Verdict | None:
 
 
 def _near_relation(claim: Claim, left: Node, right: Node) -> Verdict | None:
-    """Return the verdict "doubtful" if one change makes ``left == right`` a known relation, "recognised" if it is one
-    for certain signs; otherwise None.
+    """Return the verdict "doubtful" if one change makes ``left == right``, solved for a letter, a known formula.
+
+    Return "recognised" if the solved equation is a known formula when its letters have certain signs, such as a > 0,
+    and None in other cases.
     """
     if len(names_in(left) | names_in(right)) < least_symbols_related(left, right):
         return None
@@ -138,7 +146,11 @@ def _near_relation(claim: Claim, left: Node, right: Node) -> Verdict | None:
 
 
 def _in_claim(repair: Repair, left: Node, right: Node, named: NamedFormula) -> Repair:
-    """Return the repair of ``left == right`` that says the same as ``repair`` of this equation, solved as ``named``."""
+    """Return ``repair``, which corrects the solved equation ``named``, as a repair of the equation ``left == right``.
+
+    The two equations are the same, solved for a letter and not. A repair that changes several terms is returned as it
+    is.
+    """
     sides = put_back(left, right, named, read_relation(repair.text)[2])
     return repair if sides is None else replace(repair, text=f"{text(sides[0])} == {text(sides[1])}")
 
@@ -175,8 +187,10 @@ def formulas_nearby(claim: Claim, named: NamedFormula) -> list[Near]:
 
 
 def _near(claim: Claim, named: NamedFormula) -> Verdict | None:
-    """Return the verdict "doubtful" if a change of one part makes the formula a known one, "recognised" if it equals a
-    known one for certain signs of its letters; otherwise None.
+    """Return the verdict "doubtful" if a change of one part makes the claim's formula a known one.
+
+    Return "recognised" if it equals a known one when its letters have certain signs, such as a > 0, and None in other
+    cases.
     """
     nearby = formulas_nearby(claim, named)
     of_bodies = [near for near in nearby if is_of_body(near.code, near.known.name)]
@@ -215,8 +229,10 @@ def _is_of_usual_frame(near: Near, others: Sequence[Sequence[Identification]]) -
 
 
 def _with_root(claim: Claim, named: NamedFormula, near: Near) -> tuple[Identification, ...]:
-    """Return (known formula,) if ``near.tree`` equals the known formula for certain signs of letters; otherwise ()."""
-    # a*sqrt(1 - x/a^2) equals sqrt(a^2 - x) for a > 0
+    """Return (known formula,) if ``near.tree``, with a root of a sum, is proven equal to the known formula; else ().
+
+    The proof may need signs of letters: a*sqrt(1 - x/a^2) equals sqrt(a^2 - x) for a > 0.
+    """
     ending = ending_of(near.known.name)
     if named.solve is None or ending not in ("", SQUARED):
         return ()

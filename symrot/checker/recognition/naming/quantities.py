@@ -1,4 +1,4 @@
-"""What the name of a claim's quantity says: the words in the names of the known formulas for this quantity."""
+"""Which known formulas the name of a claim's quantity allows: I_xy allows those named "product of inertia .."."""
 
 import re
 from collections.abc import Sequence
@@ -52,9 +52,10 @@ QUANTITIES: tuple[tuple[str, tuple[str, ...]], ...] = (
     (r"[kK](_?[a-zA-Z0-3]+)?", ("radius of gyration", "kinetic energy")),
     (r"dq_?[0-4swxyz]?|d(e|eta|epsilon)_?[0-3]?", ("quaternion",)),
 )  # fmt: skip
-"""Pattern of a name, with ``d`` in front for a rate -> words, one of which is in the name of each formula for it.
+"""Pattern of a quantity's name -> words; the name of a known formula for the quantity contains one of these words.
 
-Names without a pattern may name any formula.
+The name of a rate begins with ``d``. The first pattern that matches counts. A quantity whose name matches no pattern
+may have any formula.
 """
 
 OF_MATRICES = ("inertia tensor", "rotation matrix", "Jacobian", "quaternion")
@@ -102,8 +103,10 @@ def names_in(formula: Node) -> set[str]:
 
 
 def words_of(named: NamedFormula) -> tuple[str, ...] | None:
-    """Return words, one of which is in the name of each known formula for a claim's quantity: ("product of inertia",)
-    for I_xy. None if the quantity's name has no usual meaning.
+    """Return words for a claim's quantity, ("product of inertia",) for I_xy.
+
+    The name of a known formula for the quantity contains one of these words. Return None if the quantity's name has no
+    usual meaning, or one that does not fit the claim's matrix.
     """
     words = _words_of_name(quantity_name(named))
     if words and any(node.kind == "call" and node.value == "cross" for _, node in walk(named.formula)):

@@ -1,6 +1,6 @@
-"""Variants of a claim: a fault undone on the side that names its quantity, and squares of vectors' letters written out.
+"""Variants of a claim: a usual fault corrected on the side of its quantity, or the squares of vectors written out.
 
-``k = I/m`` becomes ``k^2 = I/m``. The square ``sigma^2``, beside sigma_1, sigma_2 and sigma_3, is the sum of the
+``k = I/m`` becomes ``k^2 = I/m``. The square ``sigma^2``, beside sigma_1, sigma_2 and sigma_3, becomes the sum of the
 squares of these components.
 """
 
@@ -33,7 +33,7 @@ AXES = ("123", "xyz")
 
 
 class QuantityVariant(NamedTuple):
-    """Both sides of a claim such as ``k = ..`` after a fault in its name side is undone, such as k for k^2.
+    """Both sides of a claim in which a fault is corrected on the side of its quantity: ``k^2 = I/m`` for ``k = I/m``.
 
     ``code`` names the fault; ``cost`` is larger for rarer faults.
     """
@@ -45,7 +45,10 @@ class QuantityVariant(NamedTuple):
 
 
 def quantity_variants(named: NamedFormula) -> Iterator[QuantityVariant]:
-    """Yield the claim ``named`` with a usual fault undone on the quantity's side: ``k^2 = I/m`` for ``k = I/m``."""
+    """Yield a claim with a usual fault corrected on the side of its quantity: ``k^2 = I/m`` for ``k = I/m``.
+
+    If the other side is a sum of names, ``k = a + b``, also yield ``k^2 = a^2 + b^2``.
+    """
     side, formula = named.side, named.formula
     if side.kind == "call" and side.value in OPPOSITE and is_name_or_rate(side.args[0]):
         (angle,) = side.args
@@ -100,9 +103,10 @@ def is_evident_by_quantity(claim: Claim, named: NamedFormula, changed: QuantityV
 
 
 def by_lengths(named: NamedFormula, judge: Callable[[NamedFormula], Verdict]) -> Verdict | None:
-    """Return the verdict ``judge`` gives on a formula with sums of squares in place of squares of vectors' letters.
+    """Return the verdict of ``judge`` on a claim's formula in which each square of a vector is written out.
 
-    The verdict's repairs have the squares again. None if there are no such squares, or if the verdict is "definition".
+    ``sigma^2`` becomes ``sigma_1^2 + sigma_2^2 + sigma_3^2``, and is written as ``sigma^2`` again in repairs. Return
+    None if the formula has no square of a vector, or if the verdict is "definition".
     """
     squares = dict(_squares(named.formula))
     if not squares:

@@ -30,12 +30,16 @@ LEAST_SYMBOLS = 2
 """The smallest number of symbols in a scalar formula that is looked up as it is written."""
 
 LEAST_SYMBOLS_RELATED = 5
-"""The smallest number of symbols in an equation that is compared with known relations if it was edited, or if the name
-of its quantity has a usual meaning. A shorter equation may be another formula.
+"""The smallest number of symbols in an equation that is compared with known relations; a shorter one may be another
+formula.
+
+LEAST_SYMBOLS are enough if the context says what all letters mean, or for an unedited claim whose quantity has a name
+without usual meaning.
 """
 
 LEAST_SYMBOLS_OF_MOTION = 3
-"""The same limit for an equation of motion: one with the second time derivative and the sine or cosine of an angle."""
+"""LEAST_SYMBOLS_RELATED for an equation of motion, which has the second time derivative and sine or cosine of an angle.
+"""
 
 MOST_TERMS = 5000
 """An equation with more terms, after multiplying out, is not compared with known relations, which are all shorter."""
@@ -48,7 +52,7 @@ SQUARED = ", squared"
 
 
 def least_symbols_related(left: Node, right: Node) -> int:
-    """Return how many symbols the equation ``left == right`` must have to be compared with known relations."""
+    """Return the smallest number of symbols with which ``left == right`` is compared with known relations."""
     nodes = [node for side in (left, right) for _, node in walk(side)]
     accelerated = {node.args[0] for node in nodes if is_derivative(node) and len(node.args) > 2}
     # an equation of motion, such as L theta'' = -g sin theta, needs fewer than another equation
@@ -154,10 +158,10 @@ def readings_of_formula(
 
 
 def _without_function(value: Any, of_tangent: bool = False) -> tuple[Any, str]:
-    """Return a value without its outer root or inverse function, and words for that function.
+    """Return (u, ending) for ``acos(u)`` or ``sqrt(u)``: u is looked up among formulas whose names end with ``ending``.
 
     ``acos(u)`` gives (u, ", acos"), ``sqrt(u)`` gives (u, ", squared"); another u gives (u, "").
-    ``of_tangent``: ``atan(a/b)``, the solution of ``tan(x) = a/b``, gives (a and b, ", atan2").
+    With ``of_tangent``, for a claim ``tan(x) = a/b``, ``atan(a/b)`` gives (Matrix([a, b]), ", atan2").
     """
     if is_matrix(value):
         return value, ""

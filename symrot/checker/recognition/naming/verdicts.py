@@ -144,9 +144,9 @@ def _by_matrix(claim: Claim, named: NamedFormula, repair: bool) -> Verdict | Non
 
 
 def _by_inverse(claim: Claim, named: NamedFormula, repair: bool) -> Verdict | None:
-    """Return the verdict on ``w' = J^-1*(M - ..)``, for a matrix J, by that on ``J*w' = M - ..``.
+    """Return the verdict on ``w' = J^-1*(M - ..)``, for a matrix J, which is the verdict on ``J*w' = M - ..``.
 
-    None for claims of another form, and if that verdict is "definition".
+    Return None for claims of another form, and if symrot knows no formula like ``J*w' = M - ..``.
     """
     if named.formula.kind != "product" or len(named.formula.args) != 2:
         return None

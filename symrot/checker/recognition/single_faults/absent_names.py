@@ -13,22 +13,22 @@ INDEX = re.compile("([1-3]|[xyz]|([1-3xyz])\\2|[1-3xyz]{2})$")
 """The index of an axis at the end of a name."""
 
 ORDER = {"phi": "1", "theta": "2", "psi": "3"}
-"""Euler angle -> its index where all three have one letter, as theta_1, theta_2 and theta_3."""
+"""Euler angle -> its number in books that call the three angles theta_1, theta_2 and theta_3."""
 
 RATES = {"omega_1": "p", "omega_2": "q", "omega_3": "r"}
 """Component of an angular velocity -> the letter of an aircraft's rate."""
 
 MATRIX_ENTRY = re.compile("R_[1-3]{2}")
-"""An entry of a rotation matrix in known formulas."""
+"""Pattern of the name of a rotation matrix's entry in known formulas, such as R_12."""
 
 USUAL = {"c_3": "l", "mu": "m", "omega_3": "omega", "domega_3": "alpha"}
 """Name in known formulas -> the name that books use where it is the only quantity of its kind."""
 
 
 def _absent_of_product(known: str, renaming: dict[str, str | None]) -> str | None:
-    """Return a name for the component ``known`` of a quaternion product: c2 for p2 if q2 is c1 and p0 is a2.
+    """Return the claim's name for a component ``known`` of q or p in a quaternion product, which the claim lacks.
 
-    None for names without such numbers.
+    With a1, b1, c1, d1 for q and a2, b2, d2 for p, p2 is c2. Return None if the claim's names do not show it.
     """
     if re.fullmatch("[qp][0-3]", known) is None:
         return None
@@ -67,11 +67,11 @@ def _numbered_angle(known: str, mine: str, other: str) -> str:
 
 
 def absent_name(known: str, renaming: dict[str, str | None], unused: Collection[str] = ()) -> tuple[str, bool]:
-    """Return a name for the symbol ``known`` that a claim lacks, and whether the claim's other names imply it, as w_1
-    and w_2 imply w_3.
+    """Return (name, is_implied) for the symbol ``known`` of a known formula that a claim lacks.
 
-    ``unused`` are the claim's letters that stand for no symbol of the known formula; they may imply the name too: I_1
-    gives I_3 for C.
+    ``renaming`` maps the symbols of the known formula to the claim's names. The name is implied if other names of the
+    claim show it: w_1 and w_2 imply w_3. So may the claim's ``unused`` letters, which stand for no symbol of the known
+    formula: an unused I_1 implies I_3 for the moment of inertia C.
     """
     for mine, other in renaming.items():
         if other is not None and (numbered := _numbered_angle(known, mine, plain_name(other))):
@@ -103,9 +103,10 @@ def absent_name(known: str, renaming: dict[str, str | None], unused: Collection[
 
 
 def _absent_entry(known: str, renaming: dict[str, str | None]) -> str | None:
-    """Return a name for the entry ``known`` of a rotation matrix: r_21 for R_21 if R_11 is r_11.
+    """Return the claim's name for the entry ``known`` of a rotation matrix: r_21 for R_21 if R_11 is r_11.
 
-    None if the claim has no entry of the matrix, or if an entry has other indices than in the known formula.
+    Return None if ``known`` is no entry, and if the claim has no entry of the matrix, or one with other indices than in
+    the known formula.
     """
     pairs = [(mine, other) for mine, other in renaming.items() if other is not None and MATRIX_ENTRY.fullmatch(mine)]
     if MATRIX_ENTRY.fullmatch(known) is None or not pairs or any(mine[-2:] != other[-2:] for mine, other in pairs):

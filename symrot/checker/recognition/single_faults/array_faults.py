@@ -27,9 +27,9 @@ MOST_TERMS = 6
 MOST_EDITS = 700
 """The largest number of edits of one formula that are evaluated."""
 CLOSE = 1e-8
-"""The largest relative difference between sums of entries that are compared further."""
+"""The largest relative difference between equal values: of the sums of all entries first, then of the entries."""
 OPERATIONS = ("skew", "cross", "dot", "qmul", "conjugate", "trace")
-"""Functions of vectors, matrices and quaternions."""
+"""Names of the functions that take vectors, matrices or quaternions."""
 LEFT_OUT = ("extra_term", "overall_sign")
 """Codes of edits that are not tried: a formula with one term less, or a vector in the other direction, is more likely
 another right formula than a faulty one.

@@ -81,7 +81,8 @@ class Search(NamedTuple):
 
 
 CLOSE = 1e-8
-"""The largest relative difference between values that are compared further."""
+"""The largest relative difference, at the first test point, from the needed value of a part; a change of the part with
+a closer value is compared at all points."""
 
 
 def search_of(claim: Claim, named: NamedFormula, letters: Letters, values: Values) -> Search:
@@ -184,7 +185,11 @@ def _compared(search: Search, known: Known, renaming: dict[str, str | None]) -> 
 
 
 def _lacking_letter(absent: str, name: str, letters: Letters) -> Node:
-    """Return the tree for ``name``, the claim's name for the known symbol ``absent``: diff(theta(t), t) for dtheta."""
+    """Return the tree that a claim would have for ``absent``, a symbol of the known formula that the claim lacks.
+
+    ``name`` is the claim's name for the symbol: theta gives ``theta(t)`` if the claim has the rate of theta, and dtheta
+    gives ``diff(theta(t), t)`` if the claim has rates.
+    """
     moving = {node.args[0] for atom in letters.atoms if atom.kind == "call" for node in nodes_of(atom) if node.args}
     timed = Node("call", name, (TIME,))  # if its rate occurs in the claim
     if absent.startswith("d") and name.startswith("d") and any(atom.value == "diff" for atom in letters.atoms):
@@ -202,7 +207,10 @@ def _is_promising(search: Search, needed: Values) -> bool:
 
 
 def _changes(search: Search, part: Part) -> Iterator[Correction]:
-    """Yield the changes of a part that give it its needed values: left out, multiplied, or changed by a usual fault."""
+    """Yield the changes of a part of the claim's formula that give the part the values ``part.needed``.
+
+    The part may be left out, get another sign or numeric factor, or have a usual fault corrected.
+    """
     if is_superfluous(part):
         code, cost = ("extra_term", 0.0) if part.parent == "sum" else ("factor", COST["factor_removed"])
         yield Correction(number(int(part.parent == "product")), code, COST[code] + cost)

@@ -1,4 +1,4 @@
-"""Values of known formulas at test points, and the values that a claim's formula needs to agree with them."""
+"""Values of known formulas at test points, and values with which a claim's formula agrees with a known formula."""
 
 import math
 import re
@@ -85,7 +85,10 @@ def tree_of(known: Known) -> Node:
 
 @cache
 def tape_of(known: Known) -> Tape | None:
-    """Return the tape of a known formula; None for a matrix, or a function that tapes lack."""
+    """Return a known formula as a tape, a list of operations that is evaluated quickly.
+
+    Return None for a matrix, and for a formula with a function that no tape has.
+    """
     return tape_of_tree(tree_of(known))
 
 
@@ -103,7 +106,10 @@ class KnownValues:
 
     @cached_property
     def on_tape(self) -> list[list[float]] | None:
-        """The values of all parts of the formula at each point; None if it has no tape, or no value at a point."""
+        """The values of all parts of the formula at each point, computed by its tape (list of operations).
+
+        None if the formula has no tape, or no value at one of the points.
+        """
         tape = tape_of(self.known)
         values = [] if tape is None else [tape.values(symbols) for symbols in self.symbols]
         return None if None in values or not values else [own for own in values if own is not None]

@@ -21,13 +21,18 @@ __all__ = ["POINTS", "ids_of_nodes", "is_atom", "letters_of_formula", "nodes_of"
 MOST_DRAWS = 40
 """The largest number of random points that are drawn to find ``POINTS`` of them where a formula has a value."""
 MOST_DRAWS_WITH_ROOTS = 400
-"""The number of random points for a formula with roots: of these, the points with the largest values under the roots
-are taken, where the known formula, too, is likely to have a value.
+"""The number of random points for a claim's formula with roots.
+
+Of these, the points with the largest values under the roots are taken: a known formula that differs from it by one
+fault, and so has other values under its roots, is likely to be defined there too.
 """
 POINTS = 3
 """The number of points at which formulas are compared."""
 MANY = 9
-"""A formula with at least this many letters may contain a matrix of 3 x 3 letters and not depend on all of them."""
+"""The smallest number of letters at which it is tested on which of them a formula depends.
+
+It may contain a matrix of 3 x 3 letters and, as a trace, depend only on some.
+"""
 
 
 def letters_of_formula(claim: Claim, named: NamedFormula) -> Letters | None:
