@@ -50,7 +50,7 @@ SHAPES = ("one", "cached", "many")
 
 @dataclass
 class Contestant:
-    """One tool's version of a kernel: its operations, and its times per sample, s, for each shape of input."""
+    """One tool's version of a kernel: its operations, and its times per sample, s, for each of the SHAPES of input."""
 
     name: str
     operations: Counter[str]

@@ -1,4 +1,4 @@
-"""Dual numbers: a value together with its derivatives. All are numbers of any kind (floats, Fractions, symbols, ..).
+"""Dual numbers: a value together with its derivatives, which may be floats, Fractions, symbols or other numbers.
 
 A computation that is written once for any kind of number, evaluated with dual numbers, also gives the derivatives of
 its results (forward accumulation). Source: A. Griewank, A. Walther, Evaluating Derivatives, 2nd ed., section 3.1.

@@ -73,12 +73,12 @@ class WithDerivatives:
 
     @property
     def name(self) -> str:
-        """The name of the method without derivatives, such as ``rk4``."""
+        """The name of the method ``plain``, such as ``rk4``."""
         return self.plain.name
 
     @property
     def order(self) -> int:
-        """The order of the method without derivatives, such as 4 for ``rk4``."""
+        """The order of accuracy of the method ``plain``, such as 4 for ``rk4``."""
         return self.plain.order
 
     @property
@@ -100,7 +100,10 @@ def stepped(
     rates: Program, method: Method, values: Mapping[str, Any], dt: Any,
     functions: Mapping[str, Callable[..., Any]], number: Callable[[Fraction], Any],
 ) -> list[Any]:  # fmt: skip
-    """Return the state after one step, computed with any kind of number; then its derivatives, if ``method`` has any.
+    """Return the components of the state after one step as a list, computed with any kind of number.
+
+    For a :class:`WithDerivatives`, the derivatives of the new state follow: for each entry of ``method.by``, the matrix
+    of the derivatives by the inputs that it names, row by row, one row for each state.
 
     Parameters
     ----------

@@ -206,9 +206,10 @@ def closed_form_witness(
 def _move_within(
     formulas: Sequence[Expr], values: dict[Expr, Expr], movable: Sequence[Expr], simple: Sequence[Expr]
 ) -> None:
-    """Give one of the symbols ``movable`` another value for each formula that is negative at the point ``values``.
+    """Change ``values``, a point: for each formula that is negative there, one symbol gets another value.
 
-    The formula becomes nonnegative, or the value stays. ``simple`` are the values tried.
+    The values ``simple`` of the symbols ``movable`` are tried until the formula is nonnegative; if none helps, the
+    point stays.
     """
     for formula in formulas:
         if _seems_nonnegative(formula, values) and _nonnegative(formula, values):

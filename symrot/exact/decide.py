@@ -135,7 +135,10 @@ class _FormulaCase(Case):
         return tuple(sorted(unique, key=written))
 
     def confirmed(self) -> Decision:
-        """Return "true", or "undecided" if no point is known where both sides are defined."""
+        """Return the decision "true", or "undecided" if no point is known where both sides are defined.
+
+        Raise InputError if a side is proven to be nowhere a real number.
+        """
         # formulas with ``i`` are complex, and defined wherever no divisor is zero
         needs = [need for need in needs_of(self.sides) if not need.formula.has(I)]
         if not any(side.has(I) for side in self.sides):

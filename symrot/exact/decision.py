@@ -27,7 +27,7 @@ __all__ = [
 ]  # fmt: skip
 
 MOST_SEARCHED = 4
-"""Largest number of unproven matrix entries in which a counterexample is sought."""
+"""Largest number of unproven matrix entries in which a counterexample is sought by default."""
 
 Shape = tuple[int, int] | None
 """(rows, columns) of a matrix; None for a scalar."""
@@ -118,8 +118,11 @@ class Case(ABC):
 
     @abstractmethod
     def confirmed(self) -> Decision:
-        """Return "true" if a point is known where both sides are defined, else "undecided"."""
-        # called once all entries are proven equal: without such a point the equation may be true of nothing
+        """Return the decision "true" if a point is known where both sides are defined, else "undecided".
+
+        The method is called once all entries are proven equal.
+        """
+        # without such a point the equation may be true of nothing
 
     def rely_on(self, rings: tuple[FormulaRing, ...]) -> None:
         """Add the polynomial rings that a proof uses to the evidence of the case."""
@@ -132,9 +135,9 @@ class Case(ABC):
         return (*self.lefts, *self.rights)
 
     def search(self, *searches: Search, places: Sequence[int] | None = None) -> Counterexample | None:
-        """Return the first counterexample by one of ``searches`` for the entries with the indices ``places``, or None.
+        """Return the first counterexample that one of ``searches`` yields for the entries with the indices ``places``.
 
-        Without ``places`` the unproven entries are searched.
+        Without ``places`` the first MOST_SEARCHED unproven entries are searched. The result is None if there is none.
         """
         for search in searches:
             for place in self.unproven[:MOST_SEARCHED] if places is None else places:

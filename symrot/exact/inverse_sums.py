@@ -25,7 +25,7 @@ from symrot.exact.sign_cases import vanishes_for_all_signs
 __all__ = ["Lift", "PrincipalValueProof", "lifts", "principal", "proof", "vanishes"]
 
 MOST_TERMS = 60
-"""Largest number of terms of a residual that is factored."""
+"""A polynomial with more terms is not factored, so that no condition for it (:class:`Lift`) is found."""
 
 _NAMES = (*INVERSE, log)
 
@@ -107,9 +107,9 @@ class PrincipalValueProof:
 
 
 def principal(ring: FormulaRing, numerator: PolyElement) -> PrincipalValueProof | None:
-    """Return a proof that ``numerator`` is zero under conditions: asin(sin(x)) - x is, for x from -pi/2 to pi/2.
+    """Return a proof that ``numerator`` is zero under conditions, or None if no proof is found.
 
-    None: there is no proof.
+    For example, asin(sin(x)) - x is zero for x from -pi/2 to pi/2.
     """
     names = {number: leaf for leaf, number in ring.symbols.items() if type(leaf) in (*_PRINCIPAL, atan2)}
     if not names or len(numerator) > MOST_TERMS:
@@ -154,9 +154,9 @@ def _principal_angle(ring: FormulaRing, leaf: Expr, angle: Expr) -> PrincipalVal
 
 
 def _principal_multiple(ring: FormulaRing, factor: PolyElement, names: dict[int, Expr]) -> PrincipalValueProof | None:
-    """Return a proof that ``factor`` is zero under conditions: ``asin(3*x - 4*x^3) - 3*asin(x)`` is, if abs(x) <= 1/2.
+    """Return a proof that ``factor``, with two inverse functions, is zero under conditions, or None if none is found.
 
-    None: there is no proof.
+    For example, ``asin(3*x - 4*x^3) - 3*asin(x)`` is zero if abs(x) <= 1/2.
     """
     terms = _combination(ring, factor, {**dict(enumerate(ring.generators)), **names})
     leaves = [(leaf, multiple) for leaf, multiple in terms or () if leaf is not pi]
@@ -182,10 +182,10 @@ def _principal_multiple(ring: FormulaRing, factor: PolyElement, names: dict[int,
 
 
 def _principal_sum(ring: FormulaRing, factor: PolyElement, names: dict[int, Expr]) -> PrincipalValueProof | None:
-    """Return a proof that ``factor`` is zero under conditions.
+    """Return a proof that ``factor``, a sum of inverse functions, is zero under conditions, or None if none is found.
 
-    ``asin(x) + asin(y) - asin(u)`` is zero, for u = x sqrt(1 - y^2) + y sqrt(1 - x^2), if the sum of the first two
-    terms is in the range of asin. None: there is no proof.
+    For example, ``asin(x) + asin(y) - asin(u)`` is zero, for u = x sqrt(1 - y^2) + y sqrt(1 - x^2), if the sum of the
+    first two terms is in the range of asin.
     """
     terms = _combination(ring, factor, {**dict(enumerate(ring.generators)), **names}) or ()
     leaves = [(leaf, multiple) for leaf, multiple in terms if leaf is not pi]
@@ -280,7 +280,7 @@ def _lifted(ring: FormulaRing, equations: Sequence[tuple[Expr, Expr]]) -> Lift:
 def _combination(ring: FormulaRing, factor: PolyElement, names: dict[int, Expr]) -> list[tuple[Expr, Fraction]] | None:
     """Return the pairs (leaf, number) of a sum of multiples: (asin(x), 2) and (pi, -1) for ``2*asin(x) - pi``.
 
-    None: ``factor`` is not a sum of multiples of inverse functions and pi.
+    The result is None if ``factor`` is not a sum of multiples of inverse functions and pi.
     """
     terms = []
     for mono, coefficient in factor.items():

@@ -25,7 +25,7 @@ MOST_TERMS = 60
 """Largest number of terms of a radicand that is factored."""
 
 Constraint = tuple[int, frozenset[int]]
-"""(sign, variables): the product of the signs of these variables is ``sign``."""
+"""(sign, indices of the ring's variables for some ``|f|``): the product of the signs of these f is ``sign``."""
 
 
 def vanishes_for_all_signs(ring: FormulaRing, numerator: PolyElement) -> bool:
@@ -60,7 +60,7 @@ def _insides(ring: FormulaRing, numerator: PolyElement) -> dict[int, PolyElement
 
 
 def _constraints(ring: FormulaRing, insides: dict[int, PolyElement]) -> Iterator[Constraint]:
-    """Yield constraints (sign, variables): the product of the signs of these variables is ``sign``.
+    """Yield constraints on the signs of f in ``|f|``, which hold because no radicand is negative.
 
     ``insides`` maps the variable of each ``|f|`` to f.
     """

@@ -351,8 +351,9 @@ _CHANGING = {
     "inertiafromgeom": ("auto", "false"), "balanceinertia": ("false",), "fusestatic": ("false",),
     "coordinate": ("local",), "boundmass": ("0",), "boundinertia": ("0",), "settotalmass": ("-1",),
 }  # fmt: skip
-"""Attributes of <compiler> with which MuJoCo changes inertials -> values with which it does not; numbers have an effect
-if they are positive.
+"""Attribute of <compiler> with which MuJoCo may change inertials -> values with which MuJoCo does not.
+
+A number has an effect if it is positive.
 """
 
 

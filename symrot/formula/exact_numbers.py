@@ -137,7 +137,7 @@ def _sin_first_quadrant(value: Fraction, bits: int) -> Fraction:
 
 
 _NIVEN = {Fraction(0): Fraction(0), Fraction(1, 6): Fraction(1, 2), Fraction(1, 2): Fraction(1)}
-"""The only rational sines of rational multiples of pi in the first quadrant (Niven)."""
+"""n -> sin(n pi), for all n from 0 to 1/2 for which both numbers are rational (Niven's theorem)."""
 
 
 def _sin_half_turns(half_turns: Fraction) -> Fraction:

@@ -1,8 +1,8 @@
 """Holes of a body of parts: whether each lies within parts whose density is at least its own. Standard library.
 
 A hole (a part with ``subtract = true``) is mass that is taken away. Where no part is, or where two holes overlap, the
-body would have a negative density. Such a body is refused at a point that shows it. A hole is accepted where bounds
-prove it to lie within the parts, and otherwise reported as doubtful.
+body would have a negative density. A body is refused if its density is negative at a test point. A hole is accepted if
+it is proven to lie within the parts, and otherwise reported as doubtful.
 """
 
 import math
@@ -24,10 +24,14 @@ from symrot.inertia.tensor import dot
 __all__ = ["DensePart", "PointMass", "dense_part", "doubtful_holes", "pose", "require_points"]
 
 ROUNDING = 1e-9
-"""Length by which a hole may reach out of a part, relative to its size, because dimensions are rounded numbers."""
+"""Length by which a hole may reach out of a part, relative to the radius of the ball around the hole.
+
+Dimensions are rounded numbers."""
 
 DENSITY = 0.01
-"""Share by which the density of a hole may exceed that of a part, because masses are rounded numbers."""
+"""Largest accepted excess of the density of a hole over that of the parts around it, relative to the parts' density.
+
+Masses are rounded numbers."""
 
 SHARES = (0.001, 0.25, 0.5, 0.75, 0.999)  # of the coordinates of a hole, at test points
 INWARDS = 1e-6  # share of the way from the end of a hole to its middle, at test points

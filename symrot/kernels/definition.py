@@ -19,11 +19,14 @@ Box = dict[str, tuple[Fraction, Fraction]]  # name of an input component -> smal
 
 @dataclass(frozen=True)
 class Law:
-    """An identity that a kernel's outputs satisfy for all inputs that fulfil the relations, such as "the norm is 1"."""
+    """An identity that a kernel's outputs satisfy, such as "the matrix is orthogonal", with its hypotheses.
+
+    ``vanishing`` are formulas in inputs and outputs that are zero for all inputs for which the formulas ``relations``
+    are zero, such as q0^2 + q1^2 + q2^2 + q3^2 - 1 for unit quaternions.
+    """
 
     # A certificate proves the law from the formulas; it says nothing about how they were derived.
     text: str
-    # formulas in inputs and outputs that are zero wherever the relations (hypotheses) are zero
     vanishing: tuple[Expr, ...]
     relations: tuple[Expr, ...] = ()
 

@@ -135,7 +135,7 @@ class Derivatives:
         key = (symbol, variable)
         if key not in self.slopes:
             slope = self.of(self.values[symbol], variable, symbol)
-            if self.short and slope.args and symbol not in self.roots and not _is_product(slope):
+            if self.short and slope.args and symbol not in self.roots and not _is_multiple_of_symbol(slope):
                 name = Symbol(f"{symbol}_by_{variable}", real=True)
                 self.named[name], slope = slope, name
             self.slopes[key] = slope
@@ -151,8 +151,8 @@ class Derivatives:
         return Mul(partial, slope) if not partial.is_Add else sum((term * slope for term in partial.args), S.Zero)
 
 
-def _is_product(expr: Expr) -> bool:
-    """Return whether an expression is a number times a symbol, or a symbol; such a derivative gets no name."""
+def _is_multiple_of_symbol(expr: Expr) -> bool:
+    """Return whether an expression is a symbol, or a number times a symbol: too short to get a name of its own."""
     return bool(expr.as_coeff_Mul()[1].is_Symbol)
 
 

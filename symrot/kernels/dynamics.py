@@ -167,11 +167,12 @@ def _heavy_top(name: str, body: str) -> Definition:
 
 
 def _weighed(center: Matrix) -> tuple[Matrix, Named]:
-    """Return the vector 2 W r of weight W and centre of mass r as three symbols, and the formula of each symbol.
+    """Return (vector, definitions): the vector 2 W r as three symbols, and pairs (symbol, formula) that define them.
 
-    A component that is zero stays 0. The factor 2 belongs to the formulas of the vertical.
+    W is the weight and r = ``center`` the centre of mass from the fixed point; a component that is zero stays 0. The
+    torque is the cross product of half the unit vertical with this vector.
     """
-    # The torque is half the vertical times this vector: fewer operations. Zeros stay zeros.
+    # half the vertical takes fewer operations than the vertical
     components = [symbol if c else c for symbol, c in zip(_symbols("moment_of_weight"), center, strict=True)]
     return Matrix(components), tuple(
         (symbol, 2 * _WEIGHT * c) for symbol, c in zip(components, center, strict=True) if c

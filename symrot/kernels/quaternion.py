@@ -129,11 +129,12 @@ def _branch(matrix: Matrix, pivot: int) -> Branch:
 
 
 def _larger(left: Branch, right: Branch) -> Branch:
-    """Return the branch (formulas for one pivot) with the larger ``4 q_k^2``, as conditionals that are evaluated at run
-    time.
+    """Return the formulas that select the larger of two numbers, and the row of numbers that goes with it.
+
+    A branch is a pair of the formula ``4 q_k^2``, for one component k of a quaternion q, and the list of the formulas
+    ``4 q_k q_0`` to ``4 q_k q_3``. The result is such a pair too, of conditionals that compare the two ``4 q_k^2``.
     """
     (a, row_a), (b, row_b) = left, right
-    # A branch is 4 q_k^2 and 4 q_k q_0 to 4 q_k q_3; each formula compares the two squares.
     return select_ge(a, b, a, b), [select_ge(a, b, x, y) for x, y in zip(row_a, row_b, strict=True)]
 
 

@@ -44,10 +44,13 @@ _SQUARE = Symbol("square", real=True)  # square of the length of the parameters
 
 
 def _ray(which: Projection) -> tuple[Named, Expr]:
-    """Return (definitions of symbols, s) such that the quaternion (s, parameters) describes the attitude."""
+    """Return (definitions, s): the quaternion (s, p1, p2, p3), of any norm, describes the attitude with parameters p.
+
+    s is 1 for classical Rodrigues parameters, and (1 - p^2)/2 for modified ones, written with a symbol for p^2.
+    ``definitions`` are pairs of this symbol and its formula, or empty.
+    """
     if not which.centre:
         return (), Integer(1)
-    # (1 - p^2)/2 for modified parameters, 1 for classical ones
     return ((_SQUARE, sum(p**2 for p in which.parameters)),), (1 - _SQUARE) / 2
 
 

@@ -244,8 +244,9 @@ def _packed(values: Floats) -> str:
 
 
 def _played(motion: Trajectory, reason: str) -> dict[str, Any]:
-    """Return a motion that the page plays, as evenly spaced samples of omega and quaternion, close enough to
-    be drawn.
+    """Return a motion that the page plays, as evenly spaced samples of omega and quaternion, close enough to be drawn.
+
+    ``reason`` says why the page plays the motion. InputError is raised for a trajectory without attitude.
     """
     if not motion.has_attitude:
         raise InputError('show: expected a trajectory with attitude; add "quaternion" to output.quantities')

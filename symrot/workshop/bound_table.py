@@ -33,7 +33,10 @@ def _texts() -> dict[str, str]:
 
 
 def library_tasks() -> dict[str, BoundTask]:
-    """Return the tasks of bounding the rounding errors of all library kernels, by their keys in the table."""
+    """Return a map from each key of the table to its task: to bound the rounding error of one output of a kernel.
+
+    The kernels are those of the library, with functions for doubles and for floats.
+    """
     by_key: dict[str, BoundTask] = {}
     for name, text in _texts().items():
         for operations in operations_of(name, text):

@@ -228,7 +228,7 @@ class SceneText(KernelText):
         return scene_description(self.scene.title, self.scene.name, target, lines, self.jacobian, note)
 
     def c(self, bounds: Bounds | None = None) -> tuple[str, str]:
-        """Return the C source and its header, whose head comments state the bounds."""
+        """Return the pair (C source, header); the comment at the head of the source states ``bounds``, if any."""
         description = self._description("c", header_lines(self.inputs, bounds) if bounds else ())
         return with_head(self.program, description, self._functions), c_header(self.program, description)
 

@@ -55,11 +55,11 @@ def _dop853(order: int) -> RungeKutta:
 STEPS: Mapping[str, Callable[[int], RungeKutta | TaylorSeries]] = {
     "rk4": lambda order: RK4, "taylor": TaylorSeries, "dop853": _dop853,
 }  # fmt: skip
-"""Name of a method -> the function that makes it from the order of the Taylor series, which only ``taylor`` uses."""
+"""Name of a method -> function of an order that returns the method; only that of ``taylor`` uses its argument."""
 
 
 def step_method(name: str, order: int | None = None, jacobian: Sequence[str] = ()) -> Method:
-    """Return the method of a step.
+    """Return the integration method with a given name.
 
     Parameters
     ----------

@@ -73,7 +73,10 @@ def _sweep(scene: Scene, count: int, workers: int | None, scheduler: str | None 
 
 
 class Cost(NamedTuple):
-    """What a sweep on a cluster takes: seconds, processor time of client and scheduler, and of the workers, s."""
+    """The cost of a sweep on a cluster, in s: elapsed time, and the processor times of client and of workers.
+
+    The scheduler runs in the process of the client.
+    """
 
     seconds: float
     client: float

@@ -39,11 +39,12 @@ BAR = "_bar"
 """Ending of the name of a complex conjugate: ``z_bar`` is the conjugate of z."""
 
 OF_COMPLEX = ("real_part", "imaginary_part", "conjugate", "abs")
-"""Functions that a formula applies to complex numbers: the parts, the conjugate and the absolute value."""
+"""Functions that a formula applies to complex numbers: real part, imaginary part, conjugate and absolute value."""
 
 CIRCULAR, HYPERBOLIC = ("sin", "cos", "tan"), ("sinh", "cosh", "tanh")
 OF_MATRICES = ("skew", "transpose", "inverse", "trace", "det", "eye", "cross", "qmul")
-"""Functions of formulas in which I is the unit matrix."""
+"""Names of functions of vectors and matrices: in a formula with one of them, I is the unit matrix, not the imaginary
+unit."""
 MOST_FACTORS = 16
 """The largest exponent with which a power of a complex number is multiplied out."""
 
@@ -346,7 +347,8 @@ class _Splitter:
         "atan2": angle,
         "cos": cosine, "sinh": hyperbolic_sine, "cosh": hyperbolic_cosine, "tan": tangent, "tanh": hyperbolic_tangent,
     }  # fmt: skip
-    """Kind of a formula, or the function that it calls -> the rule for its parts."""
+    """Maps the kind of a formula, or the name of the function that it calls, to the rule for its real and imaginary
+    part."""
 
 
 def _call(name: str, argument: Node) -> Node:

@@ -73,11 +73,11 @@ class Point:
     Attributes
     ----------
     symbols : dict
-        Values of symbols, ``t`` included.
+        Name of a symbol, ``t`` included -> its value.
     functions : dict
-        Values of functions of time, each with its derivatives.
+        Name of a function of time -> its value and the values of its derivatives.
     definitions : mapping
-        Trees of definitions.
+        Name of a definition -> its tree.
     remembered : frozenset of int
         Identities (``id``) of the trees whose values are stored; these trees must live as long as the point.
     spent : list of int
@@ -85,9 +85,9 @@ class Point:
     weight : int
         The cost of multiplying two values, in float multiplications; each copy with dual numbers triples it.
     known : dict
-        Stored values of trees.
+        ``id`` of a tree, or name of a definition -> its stored value.
     lifted : dict
-        Copies of the point with dual numbers, by (name, order of the derivative) of the variable.
+        (name, order of the derivative) of a variable -> the copy of the point with dual numbers for this variable.
     """
 
     symbols: dict[str, Any]

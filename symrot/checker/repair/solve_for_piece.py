@@ -64,7 +64,7 @@ class Entry:
 
 
 class Vocabulary:
-    """Short products of a claim's symbols, functions and brackets, sorted by their values for a look-up."""
+    """Short products of a claim's symbols, functions and bracketed sums, for a look-up of a product by its values."""
 
     def __init__(self, numeric: NumericFilter) -> None:
         self.numeric = numeric

@@ -16,6 +16,7 @@ MOST_TERMS = 80
 
 def vector_edits(numeric: NumericFilter) -> Iterator[Candidate]:
     """Yield repairs that replace a matrix M by M^2, or a power of M by M, or add a vector times a letter to a sum.
+
     Repairs of the right side come before those of the left side, whatever they cost. All are true at the test points.
     """
     if not numeric.matrix_names:

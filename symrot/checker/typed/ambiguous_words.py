@@ -164,6 +164,7 @@ class WordReader:
 
 def _beside_quantities(tokens: Sequence[Token]) -> Iterator[tuple[str, str]]:
     """Yield pairs (quantity, name): a quantity alone on the left side of an equation, and each name after its sign =.
+
     For ``I = Ic + m d^2`` they are (I, Ic), (I, m) and (I, d): Ic is then probably one name and no product I*c.
     """
     quantity = ""

@@ -1,6 +1,6 @@
 """Parsing functions without brackets, ``sin 2x`` and ``√x``, and derivatives as quotients, ``dx/dt``.
 
-A ``place`` counts tokens from the cursor.
+An argument ``place`` is the index of a token, counted from the cursor.
 """
 
 import re
@@ -212,7 +212,10 @@ class OpenFunctionsPart(Cursor):
         return (own.text, order, place + 1) if is_differentiated else ("", order, place)
 
     def derived(self, token: Token, operand: Node, variable: Node, order: int) -> Node:
-        """Return the derivative, which the text starts with ``token``, of ``operand`` by ``variable``."""
+        """Return the derivative of ``operand`` by ``variable``, whose text starts with ``token``.
+
+        Raise InputError for an order below 1 or above ``MOST_DERIVATIVES``.
+        """
         if not 1 <= order <= MOST_DERIVATIVES:
             raise self.fail(f"a derivative of order 1 to {MOST_DERIVATIVES}", token.start)
         self.plain = True

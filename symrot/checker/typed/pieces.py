@@ -35,10 +35,10 @@ METHODS = {
     "transpose": ("transpose", 0), "adjugate": ("adjugate", 0),
     "cross": ("cross", 1), "dot": ("dot", 1), "diff": ("diff", 8), "norm": ("norm", 0),
 }  # fmt: skip
-"""Method of SymPy's matrices -> the function, and the largest number of arguments of the method; T is an attribute."""
+"""Method of SymPy's matrices, or their attribute T -> (function that it means, largest number of its arguments)."""
 
 CONSTRUCTORS = {"hstack": "hstack", "eye": "eye", "diag": "diag"}
-"""Name after ``Matrix.`` -> the function."""
+"""Name after ``Matrix.`` -> name of the function in trees."""
 
 
 ELEMENTS = (MASS, "dV", "dA", "ds", "dt")

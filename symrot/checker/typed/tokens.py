@@ -60,7 +60,7 @@ GREEK_WORDS = frozenset(LETTERS.values())
 _GREEK = "".join(LETTERS)
 _DOTS = {"\u0307": 1, "\u0308": 2, "\u20db": 3}
 _SIGNS_OVER = {"\u0302": "hat", "\u0303": "tilde", "\u0304": "bar", "\u0305": "bar"}
-"""Mark over a letter: a hat of a unit vector, a tilde of a skew matrix, a bar that makes another name."""
+"""Mark over a letter -> its name: a hat of a unit vector, a tilde of a skew matrix, a bar that makes another name."""
 
 _OVER = {*_DOTS, *_SIGNS_OVER}
 _RAISED = dict(zip("⁰¹²³⁴⁵⁶⁷⁸⁹⁺⁻ᵀ", "0123456789+-T", strict=True))
@@ -72,7 +72,7 @@ _ALIKE = {
     "\u2126": "Ω", "º": "°", "⨯": "×", "∥": "‖", "⊙": "⊗", "˚": "°", "\ufeff": " ", "\u2061": " ", "\u2062": " ",
     "˙": "\u0307", "¨": "\u0308", "ˆ": "\u0302", "˜": "\u0303", "¯": "\u0304",
 }  # fmt: skip
-"""Character -> the characters that mean the same."""
+"""Character -> the usual character or characters with the same meaning, which replace it."""
 
 _FRACTIONS = frozenset("½⅓⅔¼¾⅕⅖⅗⅘⅙⅚⅛⅜⅝⅞⅒")
 
@@ -96,6 +96,7 @@ _MARK = re.compile(r"\*\*|==|!=|>=|<=|:=|[-+*/(),\[\].=<>^;|√×·°⊗∘‖±
 _SUBSCRIPT = re.compile(rf"_(?:[A-Za-z0-9]+|[{_GREEK}±∓])|[{''.join(_LOWERED)}]+")
 _PRIMED = re.compile(rf"'+(?=[{''.join(_LOWERED)}])")
 """Pattern of the primes between a letter and its lowered subscript, as in ``ω'₁``."""
+
 _OF_MOMENTUM = re.compile(rf"[φϕθψ](?![{''.join(_OVER)}_{''.join(_LOWERED)}0-9(])")
 """Pattern of an angle after a p, such as φ in ``pφ``: together they name the momentum that belongs to the angle."""
 
@@ -199,8 +200,9 @@ def _alike(character: str) -> str:
 
 
 def _pieces(text: str, at: int) -> Iterator[tuple[str, str, int]]:
-    """Yield (kind, text, end) of the tokens that start at the position ``at``: one token, or a name and the dots over
-    it.
+    """Yield (kind, text, end) of the tokens that start at the position ``at``; end is the position after the token.
+
+    They are one token, or a name and its marks, such as primes and dots; none if no token can start there.
     """
     character = text[at]
     if number := _NUMBER.match(text, at):

@@ -52,13 +52,13 @@ _JOINED = re.compile(
 )
 _LETTER = re.compile(r"[A-Za-z][0-9]*", re.ASCII)
 _WITH_INDEX = re.compile(r"([A-Za-z]{1,3})([A-Za-z]_[A-Za-z0-9]+)", re.ASCII)
-"""A product whose last letter has an index, such as ``EI_1``."""
+"""Pattern of a product whose last letter has an index, such as ``EI_1``."""
 
 USUAL_LETTERS = frozenset("mMghlLrRvatFIkwsuc")
 """Letters that nearly every book on mechanics uses for a quantity."""
 
 _WITH_INDICES = re.compile(r"([A-Za-z]_[0-9]){2,}", re.ASCII)
-"""A product of letters with indices, such as ``a_1b_2``."""
+"""Pattern of a product of letters with indices, such as ``a_1b_2``."""
 
 BEFORE_INDEX = USUAL_LETTERS | {"E", "T"}
 """The letters that may stand in a word before a letter with an index: E and I_1 in ``EI_1``."""
@@ -85,7 +85,7 @@ MOST_LETTERS = 3
 
 
 _OF_CENTRE = re.compile("[A-Za-z](cm|CM|com|COM|cg|CG)", re.ASCII)
-"""A quantity of the centre of mass or of gravity, such as ``vcm``."""
+"""Pattern of the name of a quantity of the centre of mass or of gravity, such as ``vcm``."""
 
 WORDS_WITH_I = ("if", "in", "is")
 """English words of two letters that start with i: they are no products of i and a letter."""
@@ -148,7 +148,10 @@ def pieces_of_word(word: str, alone: Collection[str]) -> tuple[tuple[str, ...], 
 
 
 class Shorthand(NamedTuple):
-    """A short form of a cosine or sine, ``cθ`` or ``c_theta``: its place, number of tokens, function and angle."""
+    """A short form of a cosine or sine, ``cθ`` or ``c_theta``; ``place`` is the index of its first token.
+
+    ``length`` is the number of its tokens; ``function`` and ``angle`` are the names that it means, cos and theta.
+    """
 
     place: int
     length: int

@@ -45,7 +45,10 @@ FACTORS: dict[str, tuple[Fraction, int]] = {
 OTHER_MEANINGS: dict[str, tuple[Fraction, int, str]] = {
     "Hz": (Fraction(2), 1, "1/s"), "g": (GRAVITY, 0, "m/s^2"), "lb": (POUND * GRAVITY, 0, "N"),
 }  # fmt: skip
-"""Unit -> another meaning, by its factor and SI unit: one rotation per second, the standard gravity, a force."""
+"""Unit -> another meaning of its text: (fraction and exponent of pi in the factor to the SI unit, SI unit).
+
+They are a hertz as one rotation per second, g as the standard gravity, and lb as a force.
+"""
 
 ONE_PER_SECOND = "with the hertz as one per second, and the radian as 1"
 STANDARD_GRAVITY = "with g for the standard gravity, 9.80665 m/s^2"
@@ -288,6 +291,7 @@ def unit_beside_letters(source: str) -> str:
     """Return a number that surely has a unit, such as "3 m/s^2", in a text with letters; "" if there is none.
 
     In ``2 x = 3 m`` the letter m may be a quantity.
+
     Examples
     --------
     >>> unit_beside_letters("m L^2/12 = 1 kg m^2"), unit_beside_letters("v^2/r = 3 m/s^2")

@@ -115,7 +115,10 @@ def rounding_source(program: Program) -> str:
 
 
 def _rounded_disc(system: Recurrences, number: int, places: Mapping[str, str], linear: Mapping[int, bool]) -> str:
-    """Return the C text of a disc around the computed value of a series; the disc contains the exact value."""
+    """Return the C expression of a disc around the computed value of series ``number`` that contains the exact value.
+
+    ``linear`` are the series that depend on t alone, each with whether it is linear in t.
+    """
     # the low part of the time is added to sums, and to the phases of the rule clock
     series, disc = system.series[number], _disc(system, number, places)
     if series.rule == "time":
@@ -154,8 +157,12 @@ def _constant(node: Node, places: Mapping[str, str]) -> str:
 
 
 def _disc(system: Recurrences, number: int, places: Mapping[str, str]) -> str:
-    """Return C text of a disc that contains the values of a Taylor series near a step: ``symrot_disc_square(d2)``."""
-    # d2 is the disc of series 2; places maps the name of a parameter to C, such as p[1]
+    """Return the C expression of a disc that contains the values of the quantity with the Taylor series ``number``.
+
+    The values are those at complex times within ``reach`` of t, for states within ``radius`` of y. For the square of
+    series 2, whose disc is d2, the expression is ``symrot_disc_square(d2)``. ``places`` maps the name of a parameter to
+    C, such as ``p[1]``.
+    """
     series = system.series[number]
     own = [f"d{operand}" for operand in value_operands(series)]
     if series.rule == "state":

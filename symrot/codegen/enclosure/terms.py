@@ -45,7 +45,7 @@ def value_operands(series: Series) -> tuple[int, ...]:
 def enclosure(system: Recurrences) -> Enclosure | None:
     """Return the terms of the rates dy/dt of ``system`` in which a step may miss a pulse.
 
-    None if all are polynomials of low degree.
+    The result is None if all terms are polynomials of low degree.
     """
     degrees: list[int] = []
     for series in system.series:
@@ -104,9 +104,10 @@ def functions_of_time(enclosure: Enclosure) -> dict[int, bool]:
 
 
 def rounded_terms(enclosure: Enclosure) -> Enclosure | None:
-    """Return the terms that the rounding of a phase may change much, as in 1/((t^2 - 25)^2 + w^2); None if none.
+    """Return ``enclosure`` with only the terms of the rates that the rounding of a phase may change much.
 
-    A phase is a function of time that is not linear and inside a divisor, a root or a function.
+    A phase is a nonlinear function of t inside a divisor, a root or a function: t^2 - 25 in 1/((t^2 - 25)^2 + w^2). The
+    result is None if there is no such term.
     """
     # linear phases and the functions of the rule clock are evaluated with a correction of their rounding errors
     linear = functions_of_time(enclosure)

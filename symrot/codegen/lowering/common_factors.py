@@ -56,7 +56,9 @@ class Share:
                     if node[0] == kind:
                         count.update(set(pairs(node)))
                 # the most frequent pair; between equals, one without numbers, then the one with the lowest indices
-                best = max(count, key=lambda pair: (count[pair], self._is_variable(pair), _negated(pair)), default=None)
+                best = max(
+                    count, key=lambda pair: (count[pair], self._is_preferred(pair), _negated(pair)), default=None
+                )
                 if best is None or count[best] < 2:
                     break
                 self._replace(kind, best, swap)
@@ -78,8 +80,11 @@ class Share:
         for (a, s), (b, r) in combinations(node[1], 2):
             yield "add", ((a, 1), (b, s * r))
 
-    def _is_variable(self, pair: Any) -> bool:
-        """Return whether ``pair`` is a sum of two terms, or a product of two factors that are no numbers."""
+    def _is_preferred(self, pair: Any) -> bool:
+        """Return whether ``pair`` is extracted before equally frequent pairs: any sum, or a product without numbers.
+
+        ``("mul", (a, b), ())``, for instance, is a product; its factors a and b are indices of nodes.
+        """
         return pair[0] == "add" or not any(self.nodes[i][0] == "num" for part in pair[1:] for i in part)
 
     def _replace(self, kind: str, pair: tuple[Any, ...], swap: Callable[..., tuple[Any, ...]]) -> None:

@@ -13,10 +13,17 @@ from symrot.errors import InputError
 __all__ = ["HOISTED", "Gather", "Tree"]
 
 Tree = tuple[Any, ...]
-"""A formula tree: sym name | num Fraction | mul factors divisors | add (sign, tree)... | call name args"""
+"""A formula as nested tuples, whose first entry is the kind of formula.
+
+``("sym", name)``, ``("num", Fraction)``, ``("mul", factors, divisors)`` with two tuples of trees, ``("add", terms)``
+with a tuple of pairs (1 or -1, tree), or ``("call", name of the function, arguments)`` with a tuple of trees.
+"""
 
 HOISTED = "$"
-"""First character of the name of a constant that has no number yet."""
+"""First character of the preliminary name, such as ``$3``, of a constant part of a formula.
+
+:func:`symrot.codegen.lowering.lower.lower` replaces the name by that of a parameter, such as ``p0``.
+"""
 
 LARGEST_POWER = 64  # largest power that is written as a single product
 ONE: Tree = ("num", Fraction(1))

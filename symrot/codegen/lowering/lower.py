@@ -37,7 +37,10 @@ class Lowered:
 
 
 class _Writer:
-    """Writes the nodes of a :class:`Share` as assignments in order of computation."""
+    """Writes formulas with common parts as assignments to temporaries, in order of computation.
+
+    The formulas are nodes of a :class:`Share`, which refer to each other by index.
+    """
 
     def __init__(self, share: Share, roots: Sequence[int], named: dict[int, str]) -> None:
         # roots: indices of the output nodes; named: index of a node -> name of its temporary

@@ -147,8 +147,11 @@ def _product_of(node: Node, products: Mapping[str, _Product]) -> _Product | None
 
 
 def _structural_name(node: Node, product: _Product | None, products: Mapping[str, _Product]) -> str | None:
-    """Return a name composed of the names in a formula: ``sin_theta``, ``A_minus_B``; None if it has no such name."""
-    # product: the formula as a product, or None if it is not one
+    """Return a name composed of the names in a formula, such as ``sin_theta`` for ``sin(theta)``, or None.
+
+    It is None for formulas without a short name, such as ``7*a``, a sum of four terms, or a call with two arguments.
+    ``product`` is the formula as a product, or None; ``products`` maps names of temporaries to their products.
+    """
     if product is not None:
         return product.name()
     if node[0] in ("+", "-"):

@@ -149,8 +149,8 @@ def function_body(
     real, near
         As for :func:`c_expression`.
     late : sequence of Argument
-        If not empty: the outputs in the order in which they are computed, before the first of them is stored. Otherwise
-        each result is stored as soon as it is computed.
+        If empty, each output component is stored as soon as it is computed. Otherwise, all output arguments, in the
+        order in which to compute them; they are stored after all of them are computed.
     """
     # this order keeps few values in use at a time, so that they fit into registers
     results = dict(program.outputs)

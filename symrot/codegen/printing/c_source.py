@@ -91,8 +91,10 @@ def c_source(program: Program, description: Description, reals: Sequence[Real] =
         The kernel.
     description : Description
         Title and other texts for the head comment.
-    reals, near
-        As for :func:`c_functions`.
+    reals : sequence of Real
+        The types of numbers; for each type a function for one sample and a batch function are printed.
+    near : bool
+        Whether batches call the functions of ``symrot_math.h``, which compilers vectorise; see :func:`c_functions`.
     """
     return with_head(program, description, c_functions(program, reals, near))
 

@@ -124,15 +124,17 @@ def _switch(
     kind: str = "double",
     own_ends: Sequence[Sequence[str]] = (),
 ) -> list[str]:
-    """Return the lines of a C function body: ``switch (which)`` with one case per event function."""
+    """Return the first lines of a C function body: ``head``, then ``switch (which)`` with a case per event function.
+
+    Case k defines the values ``texts[k]``, such as ``v3 = v1*v2``, as constants of the C type ``kind``; then come the
+    statements ``own_ends[k]``, or ``ends`` if there are none for single cases. In them ``{last}`` becomes the index of
+    the operation of ``tapes[k]`` that gives the result. The caller adds what follows the switch.
+    """
     lines = ["{", "    (void)t;", "    (void)y;", "    (void)p;", *head, "    switch (which) {"]
-    # case k: the definitions texts[k] of type kind, then ends or own_ends[k], where {last} is the index of the result
-    # of tapes[k]
     for number, (tape, statements) in enumerate(zip(tapes, texts, strict=True)):
         lines += [f"    case {number}: {{", *(f"        const {kind} {text};" for text in statements)]
         last = own_ends[number] if own_ends else ends
         lines += [*(f"        {end.format(last=tape.outputs[0])}" for end in last), "    }"]
-    # the caller adds the return for an unknown event
     return [*lines, "    }"]
 
 

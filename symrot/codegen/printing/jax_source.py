@@ -24,7 +24,7 @@ SLOPES = {"sinc": "tangent_gap", "sine_gap": "sine_bend", "tangent_gap": "tangen
 """Each function f whose derivative is ``-x*g(x)``, with the name of g; see :mod:`symrot.kernels.removable`."""
 
 RESERVED = frozenset({*kwlist, "jax", "jnp", *_NAMES.values()})
-"""Words of Python, and names that the text uses; no variable may have these names."""
+"""Names that no variable of a program may have in its JAX text: words of Python, jax, jnp and called functions."""
 
 _JVP = """
 

@@ -23,7 +23,7 @@ finally for function if implements import in instanceof interface let new null p
 static super switch this throw true try typeof var void while with yield undefined NaN Infinity Math Object
 """
 RESERVED = {*_WORDS.split(), "copysign", *OWN_FUNCTIONS}
-"""Words that no variable may be called in JavaScript, and names that the text uses."""
+"""Names that no variable of a program may have in its JavaScript text: words of JavaScript, and called functions."""
 
 COPYSIGN = [
     "function copysign(x, y) {",

@@ -95,7 +95,10 @@ class _Closure:
         return parts[0] + (parts[1] if node[0] == "+" else _times(parts[1], constant(-1)))
 
     def polynomial(self, i: int) -> Polynomial | None:
-        """Return series ``i`` as a polynomial in states, constants and functions of time; None for other series."""
+        """Return series ``i`` as a polynomial in states, constants and functions of time such as sin(a t + b).
+
+        The result is None if the series is no such polynomial: a quotient, for instance.
+        """
         if i not in self.polynomials:
             s = self.series[i]
             result: Polynomial | None = None  # other rules, such as a quotient, give no polynomial
@@ -112,9 +115,10 @@ class _Closure:
         return self.polynomials[i]
 
     def sum(self, s: Series, only: Iterable[int] | None = None) -> Polynomial | None:
-        """Return the sum ``s`` as a polynomial in states, constants and functions of time; None for other sums.
+        """Return the sum ``s`` of series as a polynomial in states, constants and functions of time.
 
-        With ``only``, indices of series, all other terms and the constant of ``s`` are left out.
+        The result is None if a summand is no such polynomial: a quotient, for instance. With ``only``, indices of
+        series, all other summands and the constant of ``s`` are left out.
         """
         *weights, constant = s.weights
         total = self.constant(constant) if constant is not None and only is None else Polynomial({})
@@ -153,11 +157,14 @@ class _Closure:
         return variable in self.attitude or self.variables[variable][0] == "clock"
 
     def of_attitude(self, form: Polynomial | None) -> bool:
-        """Return whether a polynomial can be an auxiliary state, or a sum of auxiliary states."""
+        """Return whether a polynomial depends on the attitude alone, so that auxiliary states can replace it.
+
+        It may contain q0..q3, in degree 2 or more, constants and functions of time, but no other state. The result is
+        False for None.
+        """
         if form is None:
             return False
         free = [v for monomial in form.terms for v, _ in monomial if self.variables[v][0] != "constant"]
-        # no other state, and degree 2 or more in the components of the quaternion
         return all(map(self.is_inner, free)) and max(map(self.degree, form.terms), default=0) > 1
 
     def degree(self, monomial: Monomial) -> int:
@@ -278,8 +285,10 @@ class _Closure:
         return _rebuilt(self, rates)
 
     def seed(self, form: Polynomial) -> Node:
-        """Return the formula in states and t of the auxiliary state ``form``, a polynomial."""
-        # it is evaluated at the start of each step
+        """Return the formula, in states and t, by which an auxiliary state is computed at the start of each step.
+
+        ``form`` is the polynomial in the attitude and in functions of time that defines the auxiliary state.
+        """
         # terms with the same functions of time are put in one bracket
         groups: dict[Monomial, dict[Fraction, list[Node]]] = {}
         for monomial, x in sorted(form.terms.items()):

@@ -1,7 +1,9 @@
 """C code of the Taylor coefficients of an ensemble: each SIMD lane (element of a vector) holds one trajectory.
 
-The jet is the list of the Taylor coefficients of all states at one time. A slot is a C variable that sums up
-convolutions. The code is placed between :file:`lanes.h` and :file:`lanes.c` of :mod:`symrot.ensemble`.
+The jet is the list of the Taylor coefficients of all states at one time. A convolution ``sum(u[k] v[n-k], k = 0..n)``
+is coefficient n of the product of two series u and v; its inner terms are those for k = 1 to n - 1. A slot is a C
+variable that sums up several convolutions. The code is placed between :file:`lanes.h` and :file:`lanes.c` of
+:mod:`symrot.ensemble`.
 """
 
 from collections.abc import Iterable, Sequence
@@ -90,10 +92,11 @@ def multiplications(program: Program, order: int) -> int:
 
 
 class _Jet:
-    """Writes the C function that computes the jet (all Taylor coefficients) of one system.
+    """Writes the C function that computes the Taylor coefficients of all states of one system, number by number.
 
-    For coefficient n, ``stage`` is ``first`` (n = 0), ``second`` (n = 1) or ``later``. From n = 2 on, C variables
-    ``a0, a1, ..`` (``b0, ..`` for odd n) hold the inner terms of the slots; ``sums`` is the letter a or b.
+    Coefficient 0 has the ``stage`` ``"first"``, coefficient 1 ``"second"``, and all others ``"later"``. From n = 2 on,
+    a C loop first adds up the inner terms (k = 1 to n - 1) of the convolutions of slot i, in the C variable ``a{i}``
+    for even n and ``b{i}`` for odd n. The argument ``sums`` of methods is this letter, a or b.
     """
 
     def __init__(self, system: Recurrences) -> None:
@@ -161,7 +164,10 @@ class _Jet:
         return self.weight(size) if sign > 0 else f"V_SUB(V_ALL(0.0), {self.weight(size)})"
 
     def slot(self, number: int, stage: str, sums: str) -> str:
-        """Return the C expression for coefficient n of slot ``number``, a sum of convolutions ``sum(u[k] v[n-k])``."""
+        """Return the C expression for coefficient n of slot ``number``, a sum of convolutions ``sum(u[k] v[n-k])``.
+
+        ``stage`` and ``sums`` follow from n, as the class says.
+        """
         # the C variable such as a3 holds the terms k = 1..n-1; terms with coefficients n are added here
         older = f"{sums}{number}" if stage == "later" else ""
         # terms with v[n] are summed apart, so that the processor can add them while it waits for u[n]
@@ -213,7 +219,10 @@ class _Jet:
     # -------------------------------------------------------------------------------------------- series
 
     def coefficient(self, i: int, n: str, stage: str, sums: str) -> list[str]:
-        """Return the C statements that set the variable ``v{i}`` to coefficient ``n`` (as C text) of series ``i``."""
+        """Return the C statements that set the variable ``v{i}`` to coefficient number ``n`` (C text) of series ``i``.
+
+        ``stage`` and ``sums`` follow from n, as the class says.
+        """
         s, name = self.series[i], f"v{i}"
         if s.rule == "sum":
             return [f"{name} = {self.sum(s, stage == 'first')};"]
@@ -285,7 +294,10 @@ class _Jet:
     # -------------------------------------------------------------------------------------------- orders
 
     def order(self, n: str, stage: str, sums: str) -> list[str]:
-        """Return the C statements for coefficient ``n`` (C text) of all series and coefficient n + 1 of the states."""
+        """Return the C statements that compute coefficient number ``n`` of all series, then n + 1 of the states.
+
+        ``n`` is C text: ``"0"``, ``"1"``, ``"n"`` or ``"m"``; ``stage`` and ``sums`` follow from it, as the class says.
+        """
         lines: list[str] = []
         made: set[int] = set()
 
@@ -319,8 +331,12 @@ class _Jet:
         return sorted({s.operands[0] for s in self.series if s.rule == "clock"})
 
     def loops(self) -> list[str]:
-        """Return the C loops that compute the inner terms of the convolutions, for n (even) and n + 1 together."""
-        # variables a{i} for order n, b{i} for order n + 1; each number is read once for both orders
+        """Return the C loops that add up the inner terms of the convolutions for two coefficients: n (even) and n + 1.
+
+        They set the C variable ``a{i}`` to the terms k = 1 to n - 1 of slot i for coefficient n, and ``b{i}`` to those
+        for coefficient n + 1 that contain no coefficient n, which is still unknown.
+        """
+        # each number is read once for both coefficients
         return [line for group in self._groups() for line in self._loop(group)]
 
     def _groups(self) -> list[list[int]]:
@@ -368,11 +384,11 @@ class _Jet:
     def _products(
         self, terms: Sequence[tuple[int, int, Convolution]], left: Sequence[int], right: Sequence[int]
     ) -> list[str]:
-        """Return the C loop over k, two values at a time, that adds products u[k] v[n-k] to the sums of slots.
+        """Return the C loop over k, two values at a time, that adds up products u[k] v[n-k] of two series u and v.
 
-        ``left`` and ``right`` are the indices of the series u and v in ``terms``.
+        ``terms`` are (i, sign, convolution of u and v): the product is added, with the sign, to the C variable ``a{i}``
+        for coefficient n and to ``b{i}`` for n + 1. ``left`` and ``right`` are the indices of all series u and v.
         """
-        # slot i has the sums a{i} for n and b{i} for n + 1
         lines = ["{", *(f"    symrot_v f{i} = {self.at(i, '1')};" for i in left)]
         lines.append("    for (int64_t k = 1; k < n - 1; k += 2) {")
         for new, old, ahead, behind in (("g", "f", "k + 1", "n - k"), ("f", "g", "k + 2", "n - k - 1")):
@@ -390,10 +406,12 @@ class _Jet:
         return [*lines, "}"]
 
     def completed_sums(self) -> list[str]:
-        """Return the C statements that add to the sums ``b{i}``, for n + 1, the terms that contain coefficients n."""
+        """Return the C statements that add the last inner terms for coefficient n + 1 to the C variables ``b{i}``.
+
+        These terms contain coefficient n of a series, which was unknown during the loops: u[1] v[n] and u[n] v[1].
+        """
         lines: list[str] = []
         for i, slot in enumerate(self.slots):
-            # the terms u[1] v[n] and u[n] v[1]; the loop before has added the others
             for sign, (a, b, _) in slot.terms:
                 one = self.at(a, "1")
                 if a == b:

@@ -1,7 +1,8 @@
 """Arrangement of the Taylor series of one motion in SIMD vectors of four elements, called lanes.
 
-A row is a vector of up to four series with the same rule, computed together. A pack is a vector of any four series, and
-a column the convolution of two packs. A slot is a sum of columns times a vector of four constants.
+A row is a vector of up to four series that are computed together, by the same recurrence rule (such as "product"). A
+pack is a vector of any four series, and a column the convolution of two packs. A slot is a sum of columns times a
+vector of four constants.
 """
 
 from collections.abc import Iterable, Sequence
@@ -19,7 +20,7 @@ MOST_USES = (1, 2)  # a product in at most this many sums is computed in each of
 
 
 class Address(NamedTuple):
-    """The place of a series: the number of its row, its lane in this row, and a sign as factor."""
+    """The place of a Taylor series, with a sign as factor: one element (``lane``) of the SIMD vector number ``row``."""
 
     sign: int  # 1, -1, or 0 for the value zero
     row: int
@@ -36,7 +37,7 @@ class Column(NamedTuple):
 
     a: Pack
     b: Pack
-    ends: str  # range of k: 0 to n for both, 1 to n for last, 1 to n - 1 for none
+    ends: str  # which of the terms k = 0 and k = n are included: both, last (k = n) or none; always k = 1 to n - 1
 
 
 class Slot(NamedTuple):
@@ -203,10 +204,13 @@ class _Placer:
         return Layout(self.series, tuple(self.rows), tuple(rates), tuple(self.columns), own, self.system.states, seeds)
 
     def _shape(self, i: int) -> tuple[int, ...]:
-        """Return a sort key, by which similar series with the same rule become neighbours and share a row."""
+        """Return a part of the sort key of series ``i`` among the series that are computed by the same rule.
+
+        Neighbours in the order share a SIMD vector (row): sums with about equally many products, for instance.
+        """
         s = self.series[i]
         products = sum(operand in self.inlined for operand in s.operands)
-        # exponentials come after pairs such as sine and cosine; sums in a row have about equally many products
+        # exponentials come after pairs such as sine and cosine
         return (s.function == "exp", -products)
 
     # -------------------------------------------------------------------------------------------- packs
@@ -224,19 +228,22 @@ class _Placer:
         return tuple(Address(1, first.row, lane) if a is None else a for lane, a in enumerate(addresses))
 
     def address(self, sign: int, series: int, lane: int) -> Address:
-        """Return the :class:`Address` of ``series``, if possible in lane ``lane``, with the factor ``sign``."""
+        """Return where to read ``series`` (an index): its row and lane, with the factor ``sign``.
+
+        A row may have the series in several lanes; ``lane`` is then preferred, so that no permutation is needed.
+        """
         first = self.place[series]
-        # an unused lane of a row repeats a series; the one in the same lane needs no permutation
         return Address(sign, first.row, lane if self.rows[first.row].lanes[lane] == series else first.lane)
 
     def column(self, pairs: Sequence[_Pair | None], ends: str, needed: Sequence[bool] = ()) -> int:
         """Add a column, the convolution of two packs, and return the index of the new column.
 
-        ``pairs[i]`` are the two series in lane i, as (sign, index); ``ends`` as in :class:`Column`.
+        ``pairs[i]`` are the two series to convolve in lane i, each as (sign, index), or None. A lane with None has the
+        value zero if ``needed[i]``, otherwise any value. ``ends`` says which end terms ``a[0] b[n]`` and ``a[n] b[0]``
+        the convolution includes: ``"both"``, ``"last"`` (the second) or ``"none"``.
         """
         a = self.pack([None if pair is None else pair[0] for pair in pairs])
         b = self.pack([None if pair is None else pair[1] for pair in pairs])
-        # a needed lane without a pair is zero; other lanes may have any value
         empty = [pair is None and need for pair, need in zip(pairs, needed, strict=False)]
         if any(empty):
             b = tuple(b[lane]._replace(sign=0) if empty[lane] else b[lane] for lane in range(LANES))
@@ -310,11 +317,10 @@ class _Placer:
         return Row("sum", lanes, tuple(made), tuple(terms), None if set(constants) == {ZERO} else constants)
 
     def _columns(self, lanes: list[list[tuple[int, int]]]) -> Iterable[int]:
-        """Add to the program vector operations that compute all products in ``lanes``; yield their indices.
+        """Add columns that compute all products in ``lanes``, and yield the indices of the new columns.
 
-        Such an operation, called a column, acts on all lanes of a vector register at once.
-
-        ``lanes[i]`` are the products in lane i, as (sign, index of the product).
+        ``lanes[i]`` are the products to add up in lane i, as (sign, index of the product). A column computes one
+        product in each of the four lanes.
         """
         rest = [[(sign, self.series[p].operands[0], self.series[p].operands[1]) for sign, p in lane] for lane in lanes]
         needed = [bool(lane) for lane in lanes]
@@ -343,9 +349,10 @@ class _Placer:
         return min(common, default=None)
 
     def _mixed(self, terms: list[tuple[int, int, int] | None], needed: Sequence[bool]) -> int:
-        """Add a column with one product (sign, u, v) of series in each lane, and return the index of the new column.
+        """Add a column with the product ``terms[i]`` of two series in lane i, and return the index of the new column.
 
-        A lane without a product is zero if ``needed``.
+        A product is (sign, u, v) with the indices of two series, or None. A lane with None has the value zero if
+        ``needed[i]``, otherwise any value.
         """
         known = {pack for column in self.columns for pack in (column.a, column.b)}
         whole = {tuple(Address(1, row, lane) for lane in range(LANES)) for row in range(len(self.rows))}

@@ -90,10 +90,12 @@ def jet_source(layout: Layout, parameters: Sequence[str]) -> str:
 
 
 class _Jet:
-    """Writes the C function that computes the jet, all Taylor coefficients, of series in SIMD vectors (``layout``).
+    """Writes the C function that computes all Taylor coefficients, number by number, of series in SIMD vectors.
 
-    For coefficient n, ``stage`` is ``first`` (n = 0), ``second`` (n = 1) or ``later``. From n = 2 on, C variables
-    ``a0, a1, ..`` (``b0, ..`` for odd n) hold the inner terms of the convolutions; ``sums`` is the letter a or b.
+    ``layout`` arranges the series in rows (vectors of four series) and columns (vectors of four convolutions
+    ``sum(a[k] b[n-k])``). Coefficient 0 has the ``stage`` ``"first"``, coefficient 1 ``"second"``, and all others
+    ``"later"``. From n = 2 on, a C loop first adds up the inner terms (k = 1 to n - 1) of column i, in the C variable
+    ``a{i}`` for even n and ``b{i}`` for odd n. The argument ``sums`` of methods is this letter, a or b.
     """
 
     def __init__(self, layout: Layout, parameters: Sequence[str]) -> None:
@@ -145,9 +147,12 @@ class _Jet:
         return f"V_FLIP({value}, {', '.join('-1' if sign < 0 else '1' for sign in signs)})" if -1 in signs else value
 
     def column(self, index: int, stage: str, sums: str) -> str:
-        """Return the C expression for coefficient n of the convolutions in column ``index``; empty for zero."""
+        """Return the C expression for coefficient n of four products of series, the column ``index``; empty for zero.
+
+        The C variable named by ``sums`` and ``index``, such as ``a2``, holds the inner terms of the convolutions from
+        n = 2 on; the terms k = 0 and k = n are added. ``stage`` tells n = 0, n = 1 and n > 1 apart.
+        """
         a, b, ends = self.layout.columns[index]
-        # the inner terms, k = 1..n-1, are known; the terms k = 0 and k = n are added
         known = f"{sums}{index}" if stage == "later" else ""
         if ends == "none":
             return known
@@ -167,8 +172,12 @@ class _Jet:
     # -------------------------------------------------------------------------------------------- rows
 
     def sum(self, row: Row, stage: str, sums: str, factor: str = "", fused: str = "V_FMA") -> str:
-        """Return the C expression for a row of four weighted sums of series, times ``factor`` (C text; empty for 1)."""
-        # fused: the C function of a b + c; terms that are computed last are added last, so that others need not wait
+        """Return the C expression for coefficient n of four weighted sums of series and products, a row of ``layout``.
+
+        It is multiplied by ``factor`` (C text; empty for 1). ``fused`` is the C function that computes a b + c.
+        ``stage`` and ``sums`` follow from n, as the class says.
+        """
+        # terms that are computed last are added last, so that others need not wait
         value = ""
         parts = [(self.picked(term.pack), term.weights) for term in row.terms]
         parts += [(self.slot(slot.columns, stage, sums), slot.weights) for slot in reversed(row.slots)]
@@ -184,8 +193,10 @@ class _Jet:
         return value or "V_ALL(0.0)"
 
     def _rest_of_time(self, row: Row) -> str:
-        """Return the C text of the coefficients of time in the four sums of a row; empty if no sum contains time."""
-        # the time is t + t_low, two doubles; the text is used for the smaller one, t_low
+        """Return the C text of the four numbers by which the time is multiplied in the four sums of ``row``.
+
+        The text is empty if no sum contains the time. The time is t + t_low, two doubles, and t_low is added apart.
+        """
         weights: list[Node] = []
         for number in row.lanes:
             series = None if number is None else self.layout.series[number]
@@ -203,7 +214,10 @@ class _Jet:
         return f"V_MUL({constant}, {factor})" if factor else constant
 
     def row(self, number: int, n: str, stage: str, sums: str) -> list[str]:
-        """Return the C statements that set ``r{number}`` to coefficient ``n`` of the four series in row ``number``."""
+        """Return the C statements that set ``r{number}``, row ``number`` of four series, to their coefficients ``n``.
+
+        ``n`` is C text; ``stage`` and ``sums`` follow from it, as the class says.
+        """
         row, name = self.rows[number], f"r{number}"
         terms = [self.picked(term.pack) for term in row.terms]
         total = self.slot(row.slots[0].columns, stage, sums) if row.slots else ""
@@ -325,7 +339,10 @@ class _Jet:
     # -------------------------------------------------------------------------------------------- orders
 
     def order(self, n: str, stage: str, sums: str) -> list[str]:
-        """Return the C statements for coefficient ``n`` (C text) of all series and coefficient n + 1 of the states."""
+        """Return the C statements that compute coefficient number ``n`` of all series, then n + 1 of the states.
+
+        ``n`` is C text: ``"0"``, ``"1"``, ``"n"`` or ``"m"``; ``stage`` and ``sums`` follow from it, as the class says.
+        """
         lines: list[str] = []
         done, packed = set(range(self.state_rows)), set[Pack]()
 
@@ -354,8 +371,12 @@ class _Jet:
         return lines
 
     def loops(self) -> list[str]:
-        """Return the C loops that compute the inner terms of the convolutions, for n (even) and n + 1 together."""
-        # variables a{i} for n, b{i} for n + 1; each number is read once for both
+        """Return the C loops that add up the inner terms of the convolutions for two coefficients: n (even) and n + 1.
+
+        They set the C variable ``a{i}`` to the terms k = 1 to n - 1 of column i for coefficient n, and ``b{i}`` to the
+        terms for coefficient n + 1 that contain no coefficient n, which is still unknown.
+        """
+        # each number is read once for both coefficients
         lines: list[str] = []
         columns = self.layout.columns
         loops = -(-len(columns) // COLUMNS_PER_LOOP)
@@ -381,10 +402,12 @@ class _Jet:
         return lines
 
     def completed_sums(self) -> list[str]:
-        """Return the C statements that add to the sums ``b{i}``, for n + 1, the terms that contain coefficients n."""
+        """Return the C statements that add the last inner terms for coefficient n + 1 to the C variables ``b{i}``.
+
+        These terms contain coefficient n of a series, which was unknown during the loops: a[1] b[n] and a[n] b[1].
+        """
         lines: list[str] = []
         for i, (a, b, _) in enumerate(self.layout.columns):
-            # the terms a[1] b[n] and a[n] b[1]; the loop before has added the others
             one, two = (self.at(a, "1"), self.at(b, "n")), (self.at(a, "n"), self.at(b, "1"))
             lines.append(f"b{i} = V_FMA({one[0]}, {one[1]}, V_FMA({two[0]}, {two[1]}, b{i}));")
         return lines

@@ -70,7 +70,7 @@ def moved_formulas(formulas: Sequence[Node], constants: Collection[str]) -> tupl
 
 
 class _Form(NamedTuple):
-    """A formula in the shifted time (``node``) and, for a polynomial of the original time, its coefficients."""
+    """A formula in the time tau = t - epoch (``node``) and, if it is a polynomial in t, its coefficients in t."""
 
     node: Node | None  # None for a polynomial of degree one, whose formula is made from the terms when it is used
     # the coefficients: constant formulas, lowest power first
@@ -166,7 +166,10 @@ class _Mover:
             yield negative, self.read(node)
 
     def written(self, form: _Form) -> Node:
-        """Return the formula of a :class:`_Form` in the shifted time; a polynomial is written by Horner's rule."""
+        """Return the formula of a :class:`_Form` in tau = t - epoch, the time counted from the epoch.
+
+        A polynomial without a formula is written by Horner's rule.
+        """
         if form.node is not None:
             return form.node
         assert form.terms is not None
@@ -175,10 +178,10 @@ class _Mover:
         return self.known[form.terms]
 
     def turned(self, function: str, phase: tuple[Node, ...]) -> Node:
-        """Return the sine, cosine or tangent of a polynomial of the time, ``phase``.
+        """Return the formula of the sine, cosine or tangent of a polynomial in t with the coefficients ``phase``.
 
-        The phase is c at the epoch. The sine is ``sin(c)*cos(u) + cos(c)*sin(u)``, where u is 0 there: near each of its
-        zeros it keeps its digits, which ``sin(c + u)`` loses near all zeros but 0.
+        The polynomial is c + u, where c is its value at the epoch and u its change since then. The sine is written as
+        ``sin(c)*cos(u) + cos(c)*sin(u)``: for a large c, the rounding of c + u would lose digits of the phase.
         """
         constant, *rest = self.shifted(phase)
         advance = self.power_sum([ZERO, *rest])
@@ -189,7 +192,10 @@ class _Mover:
         return above if function == "sin" else below if function == "cos" else ("/", above, below)
 
     def shifted(self, terms: tuple[Node, ...]) -> list[Node]:
-        """Return the coefficients of a polynomial in the shifted time, as formulas of constants and the epoch."""
+        """Return the coefficients in tau = t - epoch of the polynomial with the coefficients ``terms`` in t.
+
+        Both are listed from the lowest power on; the new ones are formulas in constants and the symbol ``epoch``.
+        """
         old, new = [self.resolved(term) for term in terms], []
         for i in range(len(old)):
             coefficient: Node = ZERO
@@ -200,7 +206,7 @@ class _Mover:
         return new
 
     def power_sum(self, coefficients: list[Node]) -> Node:
-        """Return the polynomial in the shifted time with the given coefficients, lowest power first."""
+        """Return the formula of the polynomial in tau = t - epoch with the given coefficients, lowest power first."""
         time, value = ("symbol", TIME), None
         for new in reversed(coefficients):
             coefficient = new if new[0] == "number" else self.parameter(new)

@@ -235,7 +235,7 @@ class FormulaRing:
         return radicand
 
     def _dependences(self) -> dict[Root, Dependence]:
-        """Return the square roots that are products of other roots, with these products: sqrt(a*b): sqrt(a)*sqrt(b)."""
+        """Return a map from square roots to the equal products of other roots: from sqrt(a*b) to sqrt(a)*sqrt(b)."""
         places = {root: n for root, n in self.roots.items() if root.index == 2 and not root.power_expression.is_number}
         plain = [root for root in places if not isinstance(root.expression, Abs)]
         if not plain or len(places) < 2:
@@ -265,7 +265,7 @@ class FormulaRing:
     def _relate(self, domain: Any) -> Relations | None:
         """Build the ring over ``domain``, the integers or the rationals; return the relations of its variables.
 
-        None: ``domain`` is the integers, but a relation contains fractions.
+        The result is None if ``domain`` is the integers, but a relation contains fractions.
         """
         self.ring = PolyRing([f"x{number}" for number in range(len(self.generators))], domain, lex)
         self.relations = Relations()

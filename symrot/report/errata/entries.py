@@ -127,7 +127,7 @@ ORIGINS = {
     "derivation": "derived from the reference",
     "proposal": "proposed by a person",
 }
-"""Origin of a correction -> the words for it."""
+"""Origin of a correction -> the words that follow "The correction was" in the sentence about its proof."""
 
 
 def _proof(item: Finding, letters: Mapping[str, str]) -> str:

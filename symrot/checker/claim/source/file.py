@@ -34,7 +34,8 @@ FILE_KEYS = ("schema", "claim", "document", "title", "kind", "lost", "note")
 
 MOST_CLAIMS = 2000
 MOST_NAMES = 500
-"""The most claims of a file, and the most names that one claim may declare or define."""
+"""MOST_CLAIMS is the largest number of claims in a file, MOST_NAMES the largest number of names that one claim may
+declare or define."""
 
 
 @dataclass(frozen=True)

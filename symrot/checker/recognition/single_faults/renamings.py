@@ -82,7 +82,7 @@ def renaming_of_product(own: Sequence[str]) -> dict[str, str | None] | None:
 
 
 NUMBERED = re.compile("([a-z])_?([1-9])")
-"""A component of a factor of a product; its groups are the letter of the component and the number of the factor."""
+"""Pattern of a component's name in a quaternion product, such as b2: the component's letter and the factor's number."""
 
 
 def _moved(renaming: dict[str, str | None]) -> int:

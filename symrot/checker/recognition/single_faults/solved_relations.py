@@ -20,8 +20,9 @@ SQUARED = ", squared"
 
 
 class SolvedRelation(NamedTuple):
-    """A known relation solved for the symbol ``name``: ``known.text`` is the formula for this symbol, or for its square
-    if ``known.name`` says so.
+    """A known relation solved for the symbol ``name``: ``known.text`` is the formula for this symbol.
+
+    If ``known.name`` ends with ", squared", ", acos" or ", asin", it is the formula for its square, cosine or sine.
     """
 
     name: str
@@ -39,7 +40,10 @@ class Solution(NamedTuple):
 
 @cache
 def solved_relations() -> tuple[SolvedRelation, ...]:
-    """Return every known relation solved for each symbol for which that is possible."""
+    """Return the known relations, each solved for every symbol that is a factor of its terms, or an angle.
+
+    Left out are symbols in two different powers or in a root, and angles outside of their only cosine or sine.
+    """
     solved = []
     for known in (known for group in by_fingerprint().values() for known in group if known.is_relation):
         tree = read_printed(known.text)
@@ -55,7 +59,10 @@ def solved_relations() -> tuple[SolvedRelation, ...]:
 
 
 def _solved_for_angles(known: Known, tree: Node) -> Iterator[tuple[str, Known]]:
-    """Yield (angle, formula) for each angle whose cosine or sine occurs once: ``H*cos(theta) == C*omega`` for theta."""
+    """Yield (angle, formula for its cosine or sine) for each angle that occurs only in its cosine or only in its sine.
+
+    For ``H*cos(theta) == C*omega`` the angle is theta and the formula C*omega/H.
+    """
     for function, inverse in (("cos", "acos"), ("sin", "asin")):
         calls = [node for _, node in walk(tree) if node.kind == "call" and node.value == function]
         for call in dict.fromkeys(calls):

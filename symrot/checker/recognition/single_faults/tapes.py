@@ -93,7 +93,10 @@ def _value(kind: str, arguments: list[float], value: float | str, symbols: Mappi
 
 
 def _required_value(operation: Operation, own: Sequence[float], place: int, argument: int, want: float) -> float | None:
-    """Return the value that an argument should have for its operation to have the value ``want``, or None."""
+    """Return the value that an argument should have for its operation to have the value ``want``; None if none fits.
+
+    ``own`` has the present values of all operations of the tape; ``place`` and ``argument`` are indices in the tape.
+    """
     try:
         if operation.kind == "sum":
             return want - (own[place] - own[argument])

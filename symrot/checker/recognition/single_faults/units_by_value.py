@@ -24,7 +24,8 @@ The values of two formulas with different units change by different factors from
 def has_other_unit(named: NamedFormula, known: Known, nodes: dict[str, Node], letters: Letters) -> bool:
     """Return whether a claim's formula has another unit than ``known`` when its letters have their usual units.
 
-    ``nodes`` maps the symbols of ``known`` to letters of the claim. False if a unit is unknown.
+    ``nodes`` maps the symbols of ``known`` to letters of the claim. False if a unit is unknown, or if a formula is a
+    matrix, zero or undefined at a test point.
     """
     # nodes: known symbol -> letter of the claim
     scales = {node: _scale(UNIT_OF_NAME.get(mine)) for mine, node in nodes.items()}
