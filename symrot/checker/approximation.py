@@ -108,7 +108,9 @@ def _on_series(left: Expr, right: Expr, letter: Symbol) -> Verdict:
 
 
 def _on_polynomial(source: str, left: Expr, right: Expr, letter: Symbol, degree: int) -> Verdict:
-    """Return the verdict on ``f ≈ p``, a formula and a polynomial in the small letter."""
+    """Return the verdict on ``f ≈ p``: whether the polynomial p is the Taylor polynomial of f in the small
+    ``letter``.
+    """
     coefficients = _coefficients(left, letter)
     powers = list(islice(coefficients, degree + 1))
     agreed = [_agree(own, Poly(right, letter).coeff_monomial(letter**n)) for n, own in enumerate(powers)]

@@ -34,11 +34,11 @@ _NAMES = (*INVERSE, log)
 class Lift:
     """A condition that implies that some polynomial is zero: all polynomials ``numerators`` of another ring are zero.
 
-    For example, ``asin(x) + acos(x) - pi/2`` is zero if its sine, and its cosine minus 1, are zero.
+    For example, ``D = asin(x) + acos(x) - pi/2`` is zero if ``sin(D)`` and ``cos(D) - 1`` are zero.
     """
 
     ring: FormulaRing
-    numerators: tuple[PolyElement, ...]  # of sin(D) and cos(D) - 1 for this D: without asin and acos
+    numerators: tuple[PolyElement, ...]  # for this D those of sin(D) and cos(D) - 1, without asin and acos
 
 
 def vanishes(ring: FormulaRing, numerator: PolyElement) -> bool:

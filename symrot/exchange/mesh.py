@@ -34,7 +34,7 @@ LARGEST_ERROR = Fraction(1, 10**12)
 LARGEST_SHARE = Fraction(1, 10**6)
 """Largest rounding error of second moments in doubles, relative to the smallest principal second moment.
 
-A thin body has a small one. A larger error could make it negative, so the integrals are then computed exactly.
+If the error is larger, the integrals are computed exactly: in a thin body, rounding could make this moment negative.
 """
 
 Rows = tuple[tuple[Any, ...], ...]

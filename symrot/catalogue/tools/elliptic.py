@@ -27,9 +27,10 @@ def derivatives(speed: Expr = S.One, parameter: Expr = MU) -> dict[Symbol, Expr]
 
 
 def squares(parameter: Expr = MU, fixed: bool = False) -> list[Expr]:
-    """Return ``[s^2 + c^2 - 1, d^2 + mu s^2 - 1]``, which is zero; s, c, d are sn, cn, dn and mu is ``parameter``.
+    """Return ``[s^2 + c^2 - 1, d^2 + mu s^2 - 1]``, two expressions that are zero for s, c, d = sn, cn, dn.
 
-    The functions are the symbols of their values at the variable argument u, with ``fixed`` at a constant argument w.
+    s, c and d are symbols for the values at the variable argument u, or with ``fixed`` at the constant argument w; mu
+    is ``parameter``.
     """
     s, c, d = W_VALUES if fixed else (SN, CN, DN)
     return [c**2 - 1 + s**2, d**2 - 1 + parameter * s**2]

@@ -32,18 +32,20 @@ NUMBERS = ("z", "w", "zeta")
 """Names that are usually complex numbers."""
 
 PAIRS = ("xy", "ab", "cd", "uv", "pq")
-"""Letters that are usually the real and the imaginary part of one number, in a product or power of ``x + i*y``."""
+"""Pairs of letters, such as "xy", that are usually the real and the imaginary part of a number; they count only if
+``x + i*y`` is in a product or power."""
 
 NUMBER = re.compile(rf"({'|'.join(NUMBERS)})(_?[0-9])?")
 BAR = "_bar"
 """Ending of the name of a complex conjugate: ``z_bar`` is the conjugate of z."""
 
 OF_COMPLEX = ("real_part", "imaginary_part", "conjugate", "abs")
-"""Functions that a formula applies to complex numbers: the parts, the conjugate and the absolute value."""
+"""Functions that a formula applies to complex numbers: real part, imaginary part, conjugate and absolute value."""
 
 CIRCULAR, HYPERBOLIC = ("sin", "cos", "tan"), ("sinh", "cosh", "tanh")
 OF_MATRICES = ("skew", "transpose", "inverse", "trace", "det", "eye", "cross", "qmul")
-"""Functions of formulas in which I is the unit matrix."""
+"""Names of functions of vectors and matrices: in a formula with one of them, I is the unit matrix, not the imaginary
+unit."""
 MOST_FACTORS = 16
 """The largest exponent with which a power of a complex number is multiplied out."""
 
@@ -67,8 +69,8 @@ def imaginary_unit(trees: Sequence[Node]) -> Node | None:
 
 
 def _evident(trees: Sequence[Node], nodes: Sequence[Node], letter: str) -> Node | None:
-    """Return the node of a letter i or j that must be the imaginary unit, as i in ``|x + i*y|``; None if it need
-    not.
+    """Return the node of a letter i or j that must be the imaginary unit, as i in ``|x + i*y|``; None if there is
+    none.
     """
     own = next((node for node in nodes if node == Node("name", letter)), None)
     if own is None:
@@ -346,7 +348,8 @@ class _Splitter:
         "atan2": angle,
         "cos": cosine, "sinh": hyperbolic_sine, "cosh": hyperbolic_cosine, "tan": tangent, "tanh": hyperbolic_tangent,
     }  # fmt: skip
-    """Kind of a formula, or the function that it calls -> the rule for its parts."""
+    """Maps the kind of a formula, or the name of the function that it calls, to the rule for its real and imaginary
+    part."""
 
 
 def _call(name: str, argument: Node) -> Node:

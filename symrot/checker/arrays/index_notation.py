@@ -19,7 +19,7 @@ __all__ = ["component_of_cross", "has_index_symbols", "written_out"]
 Relation = tuple[str, Node, Node]
 INDEXED = re.compile(r"([A-Za-z]+)_([i-np-s]{1,4})")
 SYMBOLS = {"delta": 2, "epsilon": 3}
-"""Symbol -> the number of its indices."""
+"""Maps delta and epsilon to the number of their indices."""
 
 OF_PAULI = frozenset({"sigma", "i", "I"})
 """The letters of identities such as ``σ_j σ_k = δ_jk + i ε_jkl σ_l``: Pauli's matrices, i and the unit matrix."""

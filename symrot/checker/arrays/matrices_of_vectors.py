@@ -248,7 +248,10 @@ def _with_rate_matrix(relation: tuple[str, Node, Node], known: Collection[str]) 
 
 
 def _argument(factors: Sequence[Node], place: int) -> tuple[Node | None, Sequence[Node]]:
-    """Return ω and the factors after ``Ω(ω)`` if this is at ``place``, as a call or as two factors; else (None, ())."""
+    """Return ω and the factors after ``Ω(ω)`` if the factor at ``place`` is ``Ω(ω)``; else (None, ()).
+
+    ``Ω(ω)`` may be a call, or two factors.
+    """
     factor, after = factors[place], factors[place + 1 :]
     if factor.kind == "call" and factor.value == "Omega" and len(factor.args) == 1 and factor.args[0].value in OMEGA:
         return factor.args[0], after

@@ -55,7 +55,8 @@ class _Text:
             raise InputError(f"{prefix}expected at most {MOST_PIECES} numbers, names and signs, got {len(self.tokens)}")
 
     def read(self, as_sympy: bool, one_side: bool, flips: Collection[tuple[str, int]] = ()) -> Reading:
-        """Return the reading (interpretation) of the text in which the pieces ``flips`` have their less usual meaning.
+        """Return the reading (interpretation) of the text in which the parts ``flips`` have their less usual
+        meaning.
 
         Parameters
         ----------
@@ -133,7 +134,7 @@ class _Text:
 
 
 def _without_lowering(tokens: list[Token]) -> list[Token]:
-    """Return tokens without the mark that lowers a cross, as in ``[k]_×``."""
+    """Return tokens without the mark before a lowered cross (a subscript), as in ``[k]_×``."""
     padded = [*tokens, tokens[-1]]
     triples = zip([tokens[0], *tokens], tokens, padded[1:], strict=False)
     return [

@@ -47,7 +47,7 @@ AXES = ("xyz", "123", "1234", "0123")
 """Endings of the names of a vector's components, "xyz" for a_x, a_y and a_z; the four digits are for quaternions."""
 
 TENSOR = re.compile(r"[IJ](_[A-Za-z]\w*)?", re.ASCII)
-"""The names of inertia tensors."""
+"""Pattern of the names of inertia tensors."""
 
 
 @dataclass(frozen=True)

@@ -36,7 +36,8 @@ _STOP = frozenset({
     "formula", "theorem", "principal", "components", "component", "unit", "dq/dt", "omega", "b", "e", "b^-1", "=",
     "i", "squared", "acos", "asin", "atan2", "2", "without", "minus", "sign", "physical",
 })  # fmt: skip
-"""Words in the names of derived formulas that do not tell formulas for one quantity apart."""
+"""Words in the names of derived formulas that a context need not state, since they do not tell formulas for one
+quantity apart."""
 
 
 COMPONENTS = {
@@ -78,7 +79,7 @@ def place_of(name: str) -> str:
 
 
 def admits_name(context: Context, name: str, quantity: str) -> bool:
-    """Return whether a claim about ``quantity``, such as I_z, may mean the derived formula called ``name``."""
+    """Return whether a claim about ``quantity``, such as I_z, may be about the derived formula called ``name``."""
     # "moment of inertia of a rod about an end" contradicts the context "about the centre"
     return not any(misfits(context, name, quantity))
 
@@ -208,8 +209,8 @@ OPEN_PLACES = tuple(title for title, _, phrases in PLACES if not phrases)
 
 
 def admits_letters(context: Context, name: str, mapping: Mapping[str, str], letters: Iterable[str]) -> bool:
-    """Return whether the context allows ``mapping``, {"R": "r"}: letters of a claim for symbols of the formula
-    ``name``.
+    """Return whether the context allows ``mapping``, from symbols of the formula ``name`` to letters of a claim:
+    {"R": "r"}.
     """
     sequence = sequence_of(name)
     # ``mapping`` has the letter for each renamed symbol; other letters mean the symbol of the same name

@@ -92,7 +92,7 @@ def place_by_words(title: str, sequence: str) -> int | None:
 
 
 def orders(context: Context, letters: Sequence[str], sequence: str) -> Iterator[Order]:
-    """Yield the possible assignments of ``letters`` to the angles of a sequence, the likeliest first."""
+    """Yield the usual or stated assignments of ``letters`` to the angles of a sequence, the likeliest first."""
     spelled = {letter: letter_of_angle(letter) for letter in letters}
     family = next((own for own in FAMILIES if {*spelled.values()} <= {*own}), None)
     if family is None or len({*spelled.values()}) < len(spelled):

@@ -1,7 +1,8 @@
 """Verdicts on claims about a quantity in a context, which states the meanings of names.
 
-A claim means a known formula, such as the "moment of inertia of a rod about an end", if its context or its quantity
-states each word of this name. It is true if it equals such a formula, false if it differs from all.
+A known formula, such as the "moment of inertia of a rod about an end", is meant if the context or the claim's quantity
+states each word of the formula's name. The claim is true if it equals a formula that is meant, false if it differs from
+all of them.
 """
 
 import re
@@ -41,7 +42,8 @@ from symrot.exact.ring.ratio import TooLarge
 __all__ = ["in_context"]
 
 MOST_DIAGNOSED = 4
-"""The largest number of assignments of letters for which the fault of a claim is sought."""
+"""The largest number of known formulas with which a false claim is compared to find its fault; a formula counts once
+for each assignment of letters."""
 
 MOST_COSTLY = 2.0
 """The cost of a repair that replaces the whole formula by a derived one."""

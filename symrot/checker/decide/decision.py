@@ -114,7 +114,10 @@ def _with_positive_symbols(equation: Equation, decision: Decision) -> Decision:
 
 
 def _without_divisor(condition: Any, equation: Equation) -> Any:
-    """Return x for a ``condition`` on ``x/abs(y)`` if the equation is true for y = 0; otherwise ``condition``."""
+    """Return a condition without the divisors that it need not have: ``x >= 0`` for ``x/abs(y) >= 0``.
+
+    A divisor abs(y) is dropped if the equation is proven to be true for y = 0.
+    """
     # the proof of sqrt(x**2*y**2) == x*y gives the condition x/abs(y) >= 0, which becomes x >= 0
     if not isinstance(condition, Requirement) or condition.strict or equation.hypotheses:
         return condition

@@ -36,7 +36,7 @@ HIGHEST_OF_BASE = 4
 MOST_POINTS = 500
 MOST_BASES = 12
 VALUES = tuple(Rational(n, d) for n, d in ((1, 1), (0, 1), (-1, 1), (2, 1), (-2, 1), (1, 2), (1, 3)))
-"""Values of symbols at which sides are compared."""
+"""Values that symbols get in the search for a point at which the sides differ."""
 
 LONGEST_WHOLE_NUMBER = 40
 """The largest number of digits of a whole number that is written exactly."""

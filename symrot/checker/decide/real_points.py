@@ -1,6 +1,6 @@
 """Exact real points that obey constraints: rational points first, then points with algebraic coordinates.
 
-A point is drawn at random, equation by equation. An equation is solved if it is linear in an unknown, a quadric, a
+A point is chosen at random, equation by equation. An equation is solved if it is linear in an unknown, a quadric, a
 polynomial in one unknown, or a product; otherwise an unknown gets a simple value. Every point is checked exactly.
 """
 
@@ -148,7 +148,9 @@ class _Drawing:
         raise _DeadEnd
 
     def completed(self) -> RealPoint:
-        """Return the finished point: free unknowns get values, then the unknowns that equations were solved for."""
+        """Return the finished point: first free unknowns get values, then the unknowns for which equations were
+        solved.
+        """
         later = {place for place, _, _ in self.solved}
         for place in sorted(self.constraints.free - later - self.values.keys()):
             self.values[place] = self.field.convert(self.drawn(place), QQ)

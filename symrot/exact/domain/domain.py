@@ -50,7 +50,8 @@ def radicands(ring: FormulaRing) -> list[Expr]:
 def split_radicands(ring: FormulaRing) -> list[Expr]:
     """Return the formulas P of those square roots ``sqrt(P f^2)`` that the ring reads as ``|f| sqrt(P)``.
 
-    Proofs in the ring hold only where P >= 0. A P that SymPy knows to be positive is omitted.
+    Where f = 0 and P < 0 only the first formula is real, so proofs in the ring hold only where P >= 0. A P is omitted
+    if it is zero wherever f is zero, or if SymPy knows that it is positive.
     """
     # where f = 0 and P = -1, sqrt(P f^2) is 0 but |f| sqrt(P) is not real: the proof does not cover such a point
     loose = [root for radical in ring.radicals.values() if radical.loose for root in radical.roots]

@@ -24,7 +24,7 @@ MOST_PIECES = 4000
 
 SMALLEST_PIVOT = 1e-7
 RADII = (1e-11, 1e-8, 1e-6)
-"""Half widths of the boxes in which a proof of a solution is tried, in turn; for an unknown x times ``1 + |x|``."""
+"""Half widths, relative to ``1 + |x|`` for each unknown x, of boxes that are tried in turn to prove a solution."""
 
 Row = list[float]
 

@@ -1,6 +1,6 @@
-"""A budget for one decision whether an equation is true: how many formulas may be converted to polynomials.
+"""A budget for one decision whether an equation is true: how many polynomial rings may be built.
 
-Nested roots and inverse functions need many conversions. Results are stored only until the decision ends, so the count,
+Nested roots and inverse functions need many rings. Results are stored only until the decision ends, so the count,
 and with it the verdict, is the same on every machine and for any order of decisions.
 """
 
@@ -16,9 +16,9 @@ from symrot.exact.ring.ratio import TooLarge
 __all__ = ["MOST_RINGS", "one_decision", "remembered", "spend_ring"]
 
 MOST_RINGS = 2000
-"""Largest number of polynomial rings that are built, and formulas converted to them, to decide one equation.
+"""Largest number of polynomial rings that may be built to decide one equation; building them takes seconds.
 
-They take seconds; claims of the random tests need at most 400."""
+The claims of the random tests need at most 400."""
 
 OPERATIONS_OF_RING = 500
 """Number of operations that one new polynomial ring costs, besides those that depend on the size of its formulas."""
@@ -28,8 +28,8 @@ OPERATIONS_OF_RING = 500
 class _Budget:
     """What remains of the budget of one decision, and the results stored for this decision."""
 
-    left: int = MOST_RINGS  # number of formulas that may still be converted to polynomials
-    results: dict[Hashable, Any] = field(default_factory=dict)  # stored conversions
+    left: int = MOST_RINGS  # number of polynomial rings that may still be built
+    results: dict[Hashable, Any] = field(default_factory=dict)
 
 
 _current: ContextVar[_Budget | None] = ContextVar("budget of the decision", default=None)
@@ -37,7 +37,7 @@ _current: ContextVar[_Budget | None] = ContextVar("budget of the decision", defa
 
 @contextmanager
 def one_decision() -> Iterator[None]:
-    """Return a context (``with one_decision():``) for the decision of one equation, with one budget of conversions.
+    """Return a context (``with one_decision():``) for deciding one equation, with one budget of polynomial rings.
 
     A context inside another one shares the budget of the outer one.
     """

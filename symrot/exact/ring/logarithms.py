@@ -23,7 +23,7 @@ MOST_BITS_FACTORED = 64
 """A number with more bits is not factored into primes."""
 
 MOST_TERMS = 60
-"""An argument of a logarithm whose numerator or denominator has more terms is not factored."""
+"""A numerator or denominator, in the argument of a logarithm, that has more terms is not factored."""
 
 
 @dataclass(frozen=True)

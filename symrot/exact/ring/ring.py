@@ -307,8 +307,8 @@ class FormulaRing:
     def _tangled_numbers(self, rules: Sequence[Rule]) -> dict[int, Number]:
         """Return a map from indices of variables to the algebraic numbers that they stand for, such as 2^(1/3).
 
-        The relations of these variables may not imply all equations between the numbers. The map is empty if they do,
-        as for square roots of primes, or if the ring contains the imaginary unit.
+        There may be equations between such numbers that do not follow from the ring's relations. The map is empty if
+        there are none, as for square roots of primes alone, and if the ring contains the imaginary unit.
         """
         known: dict[int, Number] = {}
         if self.fine:

@@ -20,7 +20,7 @@ __all__ = ["claims_of_reading"]
 
 CIRCULAR = ("sin", "cos", "tan")
 MOST_EQUATIONS = 30
-"""The most equations in one text; ``a = b = c`` counts as two."""
+"""The largest number of equations in one text; ``a = b = c`` counts as two."""
 
 
 def claims_of_reading(

@@ -69,7 +69,10 @@ def _plain(atom: Expr) -> str:
 
 
 def _frames(context: Context, names: dict[Expr, str], components: dict[Expr, re.Match[str]]) -> tuple[str, ...]:
-    """Return the frames of the angular velocity whose components a claim may have: the stated frames, or both."""
+    """Return the frames in which a claim may have components of the angular velocity: the stated frames, or both.
+
+    Without a statement, p, q and r are components in the body frame.
+    """
     stated = {meaning.frame for atom in components if (meaning := context.meaning_of(names[atom])) and meaning.frame}
     stated |= {context.frame} if context.frame else set()
     if not stated and any(match[2] for match in components.values()):
@@ -87,7 +90,7 @@ def _coordinates(places: dict[str, int]) -> tuple[list[Symbol], list[Symbol]]:
 
 
 ENTRY = re.compile(r"[RACQT]_?([1-3])_?([1-3])")
-"""An entry of a rotation matrix; its groups are row and column."""
+"""Pattern of the name of an entry of a rotation matrix, such as R_31; groups 1 and 2 are row and column."""
 
 
 def substitutions_of_entries(context: Context, sides: Sequence[Expr]) -> Iterator[Substitution]:

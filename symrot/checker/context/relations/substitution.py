@@ -86,9 +86,9 @@ def _sides(equation: Equation, substitution: Substitution) -> tuple[Any, Any]:
 def by_substitution(
     claim: Claim, verdict: Verdict, substitutions: Iterable[Substitution], is_complete: bool
 ) -> Verdict:
-    """Return the verdict on a claim after each of ``substitutions``; ``verdict`` if they decide nothing.
+    """Return the verdict on a claim after each of ``substitutions``; ``verdict`` if the substitutions decide nothing.
 
-    If ``is_complete``, they are all interpretations of the claim; then the verdict may be "false".
+    If ``is_complete``, the substitutions are all interpretations of the claim; then the verdict may be "false".
     """
     if not is_complete and verdict.verdict not in OPEN:
         return verdict

@@ -264,8 +264,9 @@ def _with_root(claim: Claim, named: NamedFormula, near: Near) -> tuple[Identific
 
 
 def _loses_letter(claim: Claim, tree: Node) -> bool:
-    """Return whether a letter of the formula ``tree`` cancels, as b does in ``1 + b/b``; True also for an unreadable
-    one.
+    """Return whether a letter of the formula ``tree`` cancels, as b does in ``1 + b/b``.
+
+    True also for a formula that cannot be read.
     """
     # such a formula is not offered as a repair
     try:

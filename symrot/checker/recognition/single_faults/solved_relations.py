@@ -40,9 +40,9 @@ class Solution(NamedTuple):
 
 @cache
 def solved_relations() -> tuple[SolvedRelation, ...]:
-    """Return the known relations, each solved for its symbols.
+    """Return the known relations, each solved for every symbol that is a factor of its terms, or an angle.
 
-    Left out are symbols that occur in different powers, and angles that occur outside of their cosine or sine.
+    Left out are symbols in two different powers or in a root, and angles outside of their only cosine or sine.
     """
     solved = []
     for known in (known for group in by_fingerprint().values() for known in group if known.is_relation):
