@@ -15,9 +15,9 @@ FUNCTIONS: tuple[Mapping[str, str], ...] = (
     {"c": "cos", "s": "sin", "v": "vers"},
     {"C": "cos", "S": "sin", "V": "vers"},
 )
-"""Letter of a short form -> its function: small letters, and capital letters, which need a C and an S of their own.
+"""Two maps, letter of a short form -> its function, for small and for capital letters; vers is the versine 1 - cos.
 
-The function vers is the versine 1 - cos.
+A text must have both a cosine and a sine from one of the maps: c and s, or C and S.
 """
 
 NO_ANGLES = ("pi", "omega", "Omega")

@@ -29,9 +29,9 @@ fault, and so has other values under its roots, is likely to be defined there to
 POINTS = 3
 """The number of points at which formulas are compared."""
 MANY = 9
-"""The smallest number of letters at which it is tested on which of them a formula depends.
+"""The smallest number of letters in a formula that is tested for the letters on which it depends.
 
-It may contain a matrix of 3 x 3 letters and, as a trace, depend only on some.
+It may contain a matrix of 3 x 3 letters and depend only on some of them, as the trace does.
 """
 
 
