@@ -16,7 +16,7 @@ from symrot.propagation.steppers.stepping import Floats
 __all__ = ["Enclosed", "exact"]
 
 ERROR = 2.0**-98
-"""More than the relative error of one double-double operation (2^-104), and than the rounding of a bound."""
+"""Bound of the relative error of one operation on sums of two doubles (2^-104), with room for rounding of the bound."""
 
 LEAST, MOST = 2.0**-900, 2.0**900  # products and quotients of this size have an exact error term
 

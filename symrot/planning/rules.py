@@ -138,9 +138,7 @@ def _special_constants(scene: Scene, structure: Structure) -> RuleOutcome:
 
 
 def _silent(torque: FormulaTorque, scene_torque: Torque) -> list[str]:
-    """Return a list with one sentence that names the axes about which a torque's formulas are zero, or an
-    empty list.
-    """
+    """Return a list of one sentence that names the axes about which a torque's formulas are zero; empty if none are."""
     axes = [str(i + 1) for i, formula in enumerate(scene_torque.formulas) if _is_zero(formula)]
     if not axes:
         return []

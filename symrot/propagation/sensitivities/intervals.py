@@ -86,8 +86,9 @@ def smooth_intervals(motion: SwitchedMotion, end: float) -> tuple[list[Interval]
 
 
 def _without_returns(motion: SwitchedMotion, intervals: list[Interval], length: float) -> list[Interval]:
-    """Return the intervals without very short ones, in which only rounding errors make the argument of a switching
-    function pass zero, before sliding holds it at zero.
+    """Return the intervals without those that only rounding errors cause, very short ones before a sliding motion.
+
+    In them the argument of a switching function passes zero, and it is held at zero from their end on.
     """
     result = intervals[:1]
     for current, following in pairwise([*intervals[1:], None]):
