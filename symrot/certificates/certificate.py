@@ -268,11 +268,13 @@ OPTIONAL_SECTIONS: dict[str, Callable[[Data, Any], bool]] = {  # section -> whet
 
 
 def with_sections(text: str, sections: Mapping[str, Any]) -> str:
-    """Return the certificate ``text`` with those ``sections``, such as ``"rounding"``, that are about its C text."""
+    """Return the certificate ``text`` with optional sections, such as ``"rounding"``, added from ``sections``.
+
+    A section that is not about the C text of this certificate, but about an earlier version, is left out.
+    """
     data = json.loads(text)
     for name, is_about in OPTIONAL_SECTIONS.items():
         try:
-            # a section about an earlier version of the C text is left out
             if sections.get(name) is not None and is_about(data, sections[name]):
                 data[name] = sections[name]
         except (KeyError, TypeError, AttributeError):

@@ -1,8 +1,8 @@
 """The effect of compiler flags on a certificate: bits and error bounds hold, only the bounds hold, or nothing holds.
 
 A certificate is about the operations of the C text, each rounded once to nearest. A flag that lets the compiler round
-elsewhere makes the certificate void. With contraction (a*b + c rounded once) only the error bounds hold, and not even
-they if a product is fused in one sum and rounded in another.
+elsewhere makes the certificate void. With contraction (a*b + c rounded once) the bits change and only the error bounds
+hold; even a bound may fail if one product is fused into one sum and rounded before another.
 """
 
 import re

@@ -195,7 +195,7 @@ def without_marks(source: str) -> tuple[str, str]:
 
 
 def _rates_in(source: str) -> Iterator[_Rate]:
-    """Yield the derivatives of vectors by time in a text, in order."""
+    """Yield the time derivatives of vectors in a text, in the order of the text."""
     covered: list[tuple[int, int]] = []
     rates = []
     for pattern in LATEX if is_latex(source) else PLAIN:
@@ -224,7 +224,7 @@ def _claim(source: str) -> Claim:
 
 
 def _column(side: Any) -> Any:
-    """Return the column of three components that is a side of an equation; for a name alone, a column of new symbols.
+    """Return a side of an equation that is a column of three components; for a name v, the column (v_x, v_y, v_z).
 
     Return None for any other side, such as a number.
     """

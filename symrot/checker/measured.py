@@ -97,7 +97,10 @@ def _in_si(tree: Node, factors: dict[str, Node]) -> Node:
 
 
 def _rounded(claim: Claim, sides: list[Node], factors: dict[str, Node], measured: Measured) -> Verdict | None:
-    """Return the verdict on an equation with a rounded number and unit on one side; None for other equations."""
+    """Return the verdict on an equation with a rounded number and unit on one side.
+
+    Return None for other equations, and if it is undecided whether the value rounds to this number.
+    """
     verdicts = []
     for side, other in (sides, sides[::-1]):
         digits, unit = _decimal(side, measured.text)
@@ -127,7 +130,11 @@ def _is_irrational(claim: Claim, value: Node) -> bool:
 
 
 def _to_digits(worked: Claim, measured: Measured, unit: str, is_right: bool) -> Verdict | None:
-    """Return the verdict whether the value of ``worked`` rounds to the digits printed for it, or None if undecided."""
+    """Return "true" or "false" for a claim ``worked`` whose value does or does not round to its printed digits.
+
+    A false claim gets a repair if the right digits are known: ``unit`` is the unit after the digits, and ``is_right``
+    tells whether they are on the right side. Return None if the claim is undecided.
+    """
     digits = worked.printed
     decision = decide_value(worked)
     if decision.verdict == "true":

@@ -24,7 +24,7 @@ __all__ = ["as_equation"]
 HIGHEST_DEGREE = 12
 """The highest degree of a polynomial whose real roots are counted."""
 MANY_TO_ONE = ("sin", "cos", "tan", "abs")
-"""Functions that have one value for several arguments."""
+"""Functions that have the same value at several arguments, so that an equation may have more than one solution."""
 
 
 def as_equation(claim: Claim, verdict: Verdict, notation: Notation) -> Verdict:

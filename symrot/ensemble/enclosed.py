@@ -33,7 +33,7 @@ class Enclosed:
         below, above = (self.high + (self.low + 2 * sign * self.error) for sign in (-1.0, 1.0))
         return self.high + 0.0, np.isfinite(self.high) & (below == self.high) & (above == self.high)
 
-    def _lost(self, other: "Enclosed") -> Floats:
+    def _rounding(self, other: "Enclosed") -> Floats:
         """Return a bound of the relative error that the addition or multiplication of two arrays itself adds.
 
         It is 0 where both numbers are single doubles, because a sum of two doubles then holds the result exactly.
@@ -46,7 +46,7 @@ class Enclosed:
     def __add__(self, other: "Enclosed") -> "Enclosed":
         high, low = dd.add((self.high, self.low), (other.high, other.low))
         size = np.abs(self.high) + np.abs(other.high)
-        return _made(high, low, self.error + other.error + self._lost(other) * size, size)
+        return _made(high, low, self.error + other.error + self._rounding(other) * size, size)
 
     def __sub__(self, other: "Enclosed") -> "Enclosed":
         return self + -other
@@ -54,7 +54,7 @@ class Enclosed:
     def __mul__(self, other: "Enclosed") -> "Enclosed":
         high, low = dd.multiply((self.high, self.low), (other.high, other.low))
         a, b, size = np.abs(self.high), np.abs(other.high), np.abs(high)
-        error = a * other.error + b * self.error + self.error * other.error + self._lost(other) * size
+        error = a * other.error + b * self.error + self.error * other.error + self._rounding(other) * size
         zero = (a == 0) & (self.error == 0) | (b == 0) & (other.error == 0)
         return _made_of_factors(high, low, error, zero)
 

@@ -228,10 +228,10 @@ class LaneIntegration:
         tail, pace = step_tail(tolerance)
         self._arguments: dict[str, float] = {"t0": t0, "tail": tail, "pace": pace, "max_steps": float(max_steps)}
         self._arguments |= {"y": address(self.y), "p": address(self.p), "times": address(self.legs.table)}
-        self._rows = self._places(("motion", "first", "count", "row"), self.legs.rows)
+        self._rows = self._addresses(("motion", "first", "count", "row"), self.legs.rows)
 
-    def _places(self, names: Sequence[str], table: NDArray[Any]) -> dict[str, int]:
-        """Return a map from each of ``names`` to the memory address of the row of ``table`` with the same number."""
+    def _addresses(self, names: Sequence[str], table: NDArray[Any]) -> dict[str, int]:
+        """Return a map from each of ``names`` to a memory address: from name k to the address of row k of ``table``."""
         # table has one column for each leg: one motion in one direction of time
         place = address(table)
         return {name: place + 8 * self.total * k for k, name in enumerate(names)}
@@ -241,7 +241,7 @@ class LaneIntegration:
         n, total, legs = len(self.y), self.total, self.legs
         states = np.full((n * self.samples, self.library.states), np.nan)
         measured, status = np.zeros((len(MEASURED), total)), np.full((1, total), TOO_MANY)
-        rows = {**self._rows, **self._places(MEASURED, measured), **self._places(("status",), status)}
+        rows = {**self._rows, **self._addresses(MEASURED, measured), **self._addresses(("status",), status)}
         jobs = []
         for k in range(self.workers):
             start, stop = k * total // self.workers, (k + 1) * total // self.workers

@@ -66,7 +66,7 @@ class Numbers:
             elif names(node).isdisjoint(self._columns):
                 values[:, k] = float(value_of(node, fixed))
             else:
-                values[:, k] = self._each(folded(node, fixed), names(node))
+                values[:, k] = self._formula_values(folded(node, fixed), names(node))
         return values
 
     def slopes(
@@ -115,7 +115,7 @@ class Numbers:
         known = {"pi": number.PI, EPOCH: Fraction(epoch), **scene}
         return {name: value for name, value in known.items() if name not in self._columns}
 
-    def _each(self, node: Node, used: set[str]) -> Floats:
+    def _formula_values(self, node: Node, used: set[str]) -> Floats:
         """Return the values of the formula ``node`` for each trajectory, shape (n,): exact values, each rounded once.
 
         ``used`` are the names in the formula.

@@ -23,7 +23,7 @@ EARLY_END = "expected a mesh in the format {}, got a file of another format or o
 
 
 class Facts(NamedTuple):
-    """Facts about a mesh, read from its file before trimesh reads it, for comparison with the mesh from trimesh."""
+    """Facts about a mesh that are read from its file before trimesh reads the mesh."""
 
     triangles: int | None = None  # after the division of polygons; None: trimesh itself refuses a file that ends early
     bent: int = 0  # polygons that are not flat

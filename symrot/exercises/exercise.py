@@ -348,7 +348,7 @@ def _misused(quantity: Quantity, value: Expr) -> Iterator[tuple[str, Expr]]:
 
 
 def _number_latex(exact: Expr, unit: str) -> str:
-    r"""Return an answer with its unit as LaTeX: ``0.125`` for 1/8, ``\frac{1}{3} \approx 0.333333`` for 1/3.
+    r"""Return an answer with its unit as LaTeX: ``0.125`` for 1/8, ``\frac{1}{3} \approx 0.3333`` for 1/3.
 
     A number of 40 or more letters of LaTeX is printed only rounded, after ``\approx``.
     """

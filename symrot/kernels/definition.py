@@ -33,7 +33,7 @@ class Law:
 
 @dataclass(frozen=True)
 class Definition:
-    """A kernel of the library as symrot derives it: arguments, formulas, and what is known about them."""
+    """A kernel of the library as symrot derives it: arguments, formulas, their domain, their laws and their source."""
 
     name: str
     title: str

@@ -10,7 +10,7 @@ from typing import Any
 import numpy as np
 
 from symrot.kinematics.arrays import Array, array_of
-from symrot.kinematics.conversions import places
+from symrot.kinematics.conversions import sequence_axes
 
 __all__ = ["continuous_quaternion", "unwrap_euler"]
 
@@ -49,7 +49,7 @@ def unwrap_euler(angles: Any, sequence: str, locked: Any = None) -> Array:
     pair of neighbouring samples suffices: the own set of the first is compared with both sets of the second. If the
     other set is closer, the choice changes between these samples from own to other, or from other to own.
     """
-    (first, _, last), _, _, _ = places(sequence)
+    (first, _, last), _, _, _ = sequence_axes(sequence)
     angles = np.array(array_of(angles, 3, what=f"a set of {sequence} angles"))
     if len(angles) == 0:
         return np.empty(angles.shape)
@@ -78,7 +78,7 @@ def _take_over(angles: Array, locked: Any, sequence: str) -> None:
     """Give each locked sample, in place, the third angle of the last unlocked sample, and adjust its first angle."""
     if not locked.any():
         return
-    (first, _, last), _, _, sign = places(sequence)
+    (first, _, last), _, _, sign = sequence_axes(sequence)
     # At lock, first and last rotation are about the same line: the attitude depends on q1 + q3 if the middle rotation
     # maps the last axis to the first, on q1 - q3 if to minus it. The adjustment preserves this.
     here = np.arange(len(angles)).reshape(-1, *[1] * (locked.ndim - 1))

@@ -310,7 +310,7 @@ def mrp_switch(s: Any) -> tuple[Array, Mask]:
 # Euler angles
 
 
-def places(sequence: str) -> tuple[tuple[int, int, int], tuple[int, int, int], int, int]:
+def sequence_axes(sequence: str) -> tuple[tuple[int, int, int], tuple[int, int, int], int, int]:
     """Return (axes, order, m, sign) of an Euler sequence, for the product of three rotations that gives ``dcm_sb``.
 
     ``axes`` are those of the three factors, from left to right; ``order`` are the indices of their angles in the set of
@@ -332,7 +332,7 @@ def euler_to_quaternion(angles: Any, sequence: str, degrees: bool = False) -> Ar
     sequence : str
         Euler sequence: intrinsic in upper case, extrinsic in lower case.
     """
-    (first, middle, last), order, cross, sign = places(sequence)
+    (first, middle, last), order, cross, sign = sequence_axes(sequence)
 
     def product(*angle: Array) -> Components:
         half = [angle[place] / 2 for place in order]
@@ -380,7 +380,7 @@ def quaternion_to_euler(q: Any, sequence: str, degrees: bool = False, lock: floa
     rounding at any distance from lock; the angles themselves have an error of about 1e-16 divided by that distance.
     Source: Bernardes & Viollet, PLoS ONE 17 (2022) e0276302.
     """
-    (first, middle, last), order, cross, sign = places(sequence)
+    (first, middle, last), order, cross, sign = sequence_axes(sequence)
     proper, intrinsic = first == last, order[2] == 2
 
     def angles_of(*q: Array) -> Components:

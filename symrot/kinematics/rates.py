@@ -11,7 +11,7 @@ import numpy as np
 
 from symrot.conventions import check_frame
 from symrot.kinematics.arrays import Array, Mask, array_of
-from symrot.kinematics.conversions import multiply, places
+from symrot.kinematics.conversions import multiply, sequence_axes
 
 __all__ = ["angular_velocity", "euler_angular_velocity", "euler_rates", "quaternion_rate"]
 
@@ -68,7 +68,7 @@ def euler_rates(angles: Any, omega: Any, sequence: str, frame: str = "body") -> 
     Exactly at gimbal lock the first axis has no component along w; the rates are not finite and the mask is True. The
     doubles nearest to pi/2 and pi are not exactly there: the mask is False, and the rates are about 1e16 times omega.
     """
-    (first, middle, last), order, cross, sign = places(sequence)
+    (first, middle, last), order, cross, sign = sequence_axes(sequence)
     angles = array_of(angles, 3, what=f"a set of {sequence} angles")
     omega = array_of(omega, 3, what="an angular velocity")
     left, tilt, right = (angles[..., place] for place in order)
@@ -91,7 +91,7 @@ def euler_angular_velocity(angles: Any, rates: Any, sequence: str, frame: str = 
     """Return omega, shape (..., 3), rad/s, in components of ``frame``, from Euler angles, rad, and their
     rates, rad/s.
     """
-    (first, middle, last), order, _, _ = places(sequence)
+    (first, middle, last), order, _, _ = sequence_axes(sequence)
     angles = array_of(angles, 3, what=f"a set of {sequence} angles")
     rates = array_of(rates, 3, what="a set of angle rates")
     left, tilt, right = (angles[..., place] for place in order)

@@ -394,13 +394,16 @@ class ExternallyDrivenMotion(RestartableMotion, SteppedInC):
             raise failure from failure.__cause__
 
     def follow(self, times: Floats, in_order: bool = False) -> tuple[Floats, Stats]:
-        """Return the states at ``times``, s, shape (n, N), and the cost of the motion."""
+        """Return the N states at n ``times``, s, shape (n, N), and the cost of the motion."""
         low, high = (float(times.min()), float(times.max())) if len(times) else (self.start, self.start)
         # sample() sorts the times, so that in_order is not used
         return self._guarded(low, high, lambda: self.stepping.restarted().sample(times))
 
     def dense(self, span: tuple[float, float]) -> Recording:
-        """Return a function from n times, s, within ``span`` to the states, shape (n, N), from recorded steps."""
+        """Return a function that takes n times within ``span``, s, and returns the N states, shape (n, N).
+
+        It evaluates recorded steps.
+        """
         return self._guarded(*span, lambda: self.stepping.restarted().record(span))
 
 

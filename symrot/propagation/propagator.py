@@ -90,9 +90,10 @@ class Propagator:
 
     @cached_property
     def _by_structure(self) -> dict[Hashable, Motion]:
-        """The first motion for each form of the equations, by :func:`symrot.planning.plan.structure_key`."""
-        # initial states with equal keys have equations of the same form
-        # later motions with equations of this form copy it
+        """Key of an initial state (:func:`symrot.planning.plan.structure_key`) -> the first motion with this key.
+
+        States with equal keys have equations of the same form, so that later motions copy the first one.
+        """
         return {structure_key(self.scene, self.scene.initial): self._motion}
 
     def _planned(self, initial: Initial | None = None) -> Plan:

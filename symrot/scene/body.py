@@ -205,7 +205,8 @@ def _tensor(value: Any, where: str) -> Matrix:
 def _body_of_moments(inertia: Matrix, values: Mapping[str, Any], where: str, source: str) -> Body:
     """Return the body with the tensor ``inertia`` about its point of rotation.
 
-    ``values`` are the entries mass, center_of_mass, name and about of its table; ``source`` ends its description.
+    ``values`` has the entries ``"mass"``, ``"center_of_mass"``, ``"name"`` and ``"about"`` of the body's table in the
+    scene file; ``source`` ends its description.
     """
     about, center = values["about"], values["center_of_mass"]
     if about == "center_of_mass":

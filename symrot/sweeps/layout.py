@@ -26,7 +26,7 @@ LABELS = {
     STATUS: {"long_name": "0 complete, -1 stopped early, -2 no motion has these values, -128 not computed yet"},
     MESSAGE: {"long_name": "why a trajectory is not complete, or a warning about its accuracy"},
 }
-"""Attributes of the arrays that every sweep has."""
+"""Name of an array -> its attributes, for the arrays of status and message, which have one entry per trajectory."""
 
 ROWS = (1024, 16384)  # least and largest number of trajectories in a chunk
 CHUNKS = 16  # chunks of a small sweep, so that several processes share the work
@@ -52,7 +52,7 @@ class Variable:
 
     @property
     def columns(self) -> list[str]:
-        """The names of its columns in a data frame: its own, or those of the four components of an attitude."""
+        """The names of the columns in a data frame that hold this array: four for an attitude, otherwise one."""
         if COMPONENT[0] not in self.dimensions:
             return [self.name]
         return [f"{self.name.rpartition('_')[0]}_{part}" for part in COMPONENT[1]]

@@ -44,7 +44,7 @@ _OPERATIONS: Mapping[str, Callable[[Any, Any], Any]] = {
 
 
 class Expressions(Reader):
-    """Reader of expressions: each becomes a :class:`Value`."""
+    """Reader of C expressions: each method reads one from the tokens and returns it compiled, as a :class:`Value`."""
 
     def _expression(self) -> Value:
         value = self._assignment()
@@ -184,7 +184,7 @@ class Expressions(Reader):
         return kind.size * self._length(kind.of) if kind.kind == "array" else 1
 
     def _at(self, kind: Type, place: Run) -> Value:
-        """Return the variable of type ``kind`` at a place (container and index), as a compiled expression."""
+        """Return the variable of type ``kind`` at the compiled address ``place``, as a compiled expression."""
         if kind.kind == "array":
             # the address of the first element
 

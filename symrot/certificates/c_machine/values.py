@@ -42,7 +42,7 @@ class Struct(NamedTuple):
 
 
 class Function(NamedTuple):
-    """A function: its declaration, and its body once that is compiled."""
+    """A C function: the types of its result and parameters, its compiled body, and the number of its variables."""
 
     result: Type
     parameters: list[Type]

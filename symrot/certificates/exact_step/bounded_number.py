@@ -41,7 +41,7 @@ def _scaled_up(a: float, b: float) -> float:
 
 
 def _known(x: float) -> float:
-    """Return a bound that was computed; infinity if it could not be computed (inf - inf, 0*inf)."""
+    """Return the computed bound ``x``, or infinity if it is NaN, the result of inf - inf or 0*inf."""
     return inf if isnan(x) else x
 
 
@@ -174,7 +174,7 @@ class Bounded:
 
     @property
     def computed(self) -> tuple[float, float]:
-        """The least and the largest computed value."""
+        """The pair of the least and the largest value that the C program may have computed for inputs of the set."""
         below, above = (min(self.error, self.relative * abs(end) if end else 0.0) for end in (self.low, self.high))
         if self.relative >= 1:
             below = above = self.error
@@ -215,7 +215,7 @@ class Bounded:
 
 
 def point(value: float) -> Bounded:
-    """Return a double without error."""
+    """Return the double ``value`` as a number without error, the same for all inputs of the set."""
     return Bounded(value, value, 0.0, 0.0)
 
 

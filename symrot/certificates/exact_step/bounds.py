@@ -252,7 +252,10 @@ def _normalise(q: Place) -> None:
 
 
 def _quaternion_product(a: Place, b: Place, c: Place) -> None:
-    """Store the product of two quaternions of norm 1; one may also be the quaternion 0 of a body at rest."""
+    """Store, at ``c``, the product of the quaternions at ``a`` and ``b``, of norm 1, with bounds of its errors.
+
+    One of them may also be the quaternion 0 of a body at rest.
+    """
     left, right = _pairs_at(a, 4), _pairs_at(b, 4)
     error = 4 * (max(x.error for x in left) + max(x.error for x in right)) + 64 * PAIR
     for i in range(4):
@@ -281,7 +284,10 @@ def _sincos(turns: list[Any], sine: Place, cosine: Place) -> None:
 
 
 def _series_error(machine: Machine) -> float:
-    """Return a bound of the error of ``sincos_quarters`` for phases of at most 1/8, apart from that of the phase."""
+    """Return a bound of the error of a sine or cosine that the C function ``sincos_quarters`` computes.
+
+    It holds for phases of at most 1/8 revolution; the error that a wrong phase causes is not included.
+    """
     results: list[Any] = [None, None]
     machine.call("sincos_quarters", Bounded(-0.1251, 0.1251, 0.0, 0.0), point(0.0), (results, 0), (results, 1))
     rounding = max(each.error for each in results)

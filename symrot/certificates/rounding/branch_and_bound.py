@@ -200,9 +200,10 @@ class _BoundSearch:
     ) -> tuple[NDArray[np.int64], NDArray[np.int64]]:
         """Return, for each part, the best input in which to halve it, and the second best input (or -1).
 
-        ``relative`` has the widths of the parts in each input; ``otherwise`` is the result if halving lowers no bound.
+        ``relative`` has the widths of the parts in each input, relative to the whole box. For a part whose bound no
+        halving lowers, the best input is the entry of ``otherwise``.
         """
-        # the best: shrinking its range lowers the bound most; ``relative``: widths relative to the whole box
+        # the best: shrinking its range lowers the bound most
         inputs, count = parts.boxes.shape[1:]
         middle = parts.boxes.mean(axis=0) + (parts.boxes - parts.boxes.mean(axis=0)) / SHRUNK
         shrunk = np.repeat(parts.boxes, inputs, axis=2).reshape(2, inputs, count, inputs)

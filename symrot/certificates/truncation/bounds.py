@@ -203,7 +203,10 @@ class _Problem:
         ]
 
     def _enclosure(self, values: Mapping[str, Any], span: Any) -> dict[str, Any] | None:
-        """Return ranges that contain all motions from ``values`` at the times ``span``, or None if none are found."""
+        """Return the ranges ``values`` of all inputs, widened so that they contain all motions during the step.
+
+        ``span`` is the interval of times since the start, 0 included. The result is None if no such ranges are found.
+        """
         around = dict(values) | {"t": values["t"] + span}
         for _ in range(ATTEMPTS):
             slopes = self.rates.evaluate(around, Functions(FUNCTIONS), number).values()

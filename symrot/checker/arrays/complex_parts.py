@@ -32,7 +32,8 @@ NUMBERS = ("z", "w", "zeta")
 """Names that are usually complex numbers."""
 
 PAIRS = ("xy", "ab", "cd", "uv", "pq")
-"""Letters that are usually the real and the imaginary part of one number, in a product or power of ``x + i*y``."""
+"""Pairs of letters, such as "xy", that are usually the real and the imaginary part of a number; they count only if
+``x + i*y`` is in a product or power."""
 
 NUMBER = re.compile(rf"({'|'.join(NUMBERS)})(_?[0-9])?")
 BAR = "_bar"
@@ -68,8 +69,8 @@ def imaginary_unit(trees: Sequence[Node]) -> Node | None:
 
 
 def _evident(trees: Sequence[Node], nodes: Sequence[Node], letter: str) -> Node | None:
-    """Return the node of a letter i or j that must be the imaginary unit, as i in ``|x + i*y|``; None if it need
-    not.
+    """Return the node of a letter i or j that must be the imaginary unit, as i in ``|x + i*y|``; None if there is
+    none.
     """
     own = next((node for node in nodes if node == Node("name", letter)), None)
     if own is None:

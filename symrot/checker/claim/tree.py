@@ -59,7 +59,7 @@ Path = tuple[int, ...]
 
 @dataclass(frozen=True, slots=True)
 class Node:
-    """One node of a formula's tree; comparisons ignore ``span``, its place in the source text."""
+    """One node of a formula's tree. ``span`` is the position in the source text, which comparisons ignore."""
 
     kind: str
     value: Any = None

@@ -316,7 +316,9 @@ def _without_plane(kind: Kind, words: str) -> tuple[str, str]:
 
 
 def _direction(kind: Kind, words: str) -> tuple[str, str]:
-    """Return the axes that words state, "xy" for "parallel to its base", or "" for none, and the other words."""
+    """Return (axes, other words) for words about a body: "xy" if the axis is "parallel to its base", "" if none is
+    stated.
+    """
     for kinds, pattern, axes in _DIRECTIONS:
         if kind.title in kinds or kind.shape in kinds:
             rest = re.sub(rf"{_LINE}{pattern}", " ", words, count=1)

@@ -64,7 +64,7 @@ def verdict_on_determinant(claim: Claim, repair: bool) -> Verdict | None:
     """Return the verdict on a claim ``det T = f(theta)`` about a matrix T without a definition; None for other claims.
 
     The verdict is "recognised" if f is the determinant of a rate Jacobian, or its negative. It is "doubtful" if
-    ``repair`` is true and one edit makes f such a determinant.
+    ``repair`` is true and f becomes this determinant, or its negative, by one edit.
     """
     assert claim.relation is not None
     generic = {*matrices_of_entries(claim.define)}

@@ -243,7 +243,7 @@ UNUSED = frozenset({
     "a", "an", "the", "of", "its", "their", "any", "some", "this", "that", "is", "are", "and", "in", "by",
     "constant", "unit", "axes", "axis", "component", "with",
 })  # fmt: skip
-"""Words without a meaning that the check needs."""
+"""Words that the check does not need to understand a statement."""
 
 _SPELLINGS = (
     (r"∫|\\int|\bint\b", " integral of "), (r"\bcenter", "centre"), (r"\bdisc\b", "disk"), (r"φ|\\varphi|\\phi", "phi"),

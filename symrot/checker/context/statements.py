@@ -146,8 +146,8 @@ def _readings_of_name(part: str, prefix: str, is_rate: bool = False) -> Iterator
 
 
 def _frame_in(words: str) -> tuple[str, str]:
-    """Return the frame that words state, and the other words: "body" and "velocity" for "velocity in the body
-    frame".
+    """Return (frame, other words): ("body", "velocity") for "velocity in the body frame"; ("", words) without a
+    frame.
     """
     for frame, pattern in _FRAME_WORDS:
         if match := re.search(rf"\b{pattern}(?![\w-])", words):

@@ -192,8 +192,9 @@ def distant_witness(case: ClaimCase) -> None:
 
 
 def condition(case: ClaimCase) -> Decision | None:
-    """Return "conditional" for a claim that is true under a condition that authors often omit, "undecided" if no point
-    is known where the condition fails; otherwise None.
+    """Return "conditional" for a claim that is true under a condition that authors often omit; otherwise None.
+
+    Return "undecided" instead if no point is known at which the condition fails: the claim may then hold everywhere.
     """
     sides = [(case.lefts[place], case.rights[place]) for place in case.unproven]
     needed = requirements(case.ring, case.numerators, sides, len(case.lefts))

@@ -28,10 +28,10 @@ REASON = "the equation is not proven for a rotation matrix {} with the angular v
 
 
 def tested_on_rotations(claim: Claim, verdict: Verdict) -> Verdict:
-    """Return ``verdict``, unless it is "recognised" and the claim gives the rate of a matrix R by an equation that is
-    not proven for rotations R.
+    """Test a "recognised" equation for the rate of a matrix R on a general rotation; return the resulting verdict.
 
-    In that case return "doubtful" if the equation is proven with R in place of each R^T, else "definition".
+    Return ``verdict`` if the equation is proven for R, "doubtful" if it is proven only with R in place of each R^T, and
+    else "definition". Other claims, and claims with other verdicts, are not tested: return ``verdict``.
     """
     if verdict.verdict != "recognised" or claim.relation is None:
         return verdict

@@ -222,7 +222,7 @@ def _frames(pieces: Sequence[Token]) -> set[str]:
 
 
 _INLINE = re.compile(r"\$\$.+?\$\$|(?<!\$)\$[^$]+\$(?!\$)|(?<!\\)\\\(.+?\\\)|(?<!\\)\\\[.+?\\\]", re.DOTALL)
-"""A formula between dollar signs or brackets, in a text."""
+"""Pattern of a LaTeX formula in a text, between dollar signs or between ``\\(`` and ``\\)`` or ``\\[`` and ``\\]``."""
 
 
 def _unwrapped(source: str) -> tuple[int, int]:

@@ -28,7 +28,10 @@ _SHORT: Sequence[tuple[str, Mapping[int, str]]] = (
 )  # fmt: skip
 
 MACROS: Mapping[str, Mapping[int, str]] = {command: forms for names, forms in _SHORT for command in names.split()}
-"""Command -> number of its arguments -> the LaTeX that it is short for. A star after the command means nothing."""
+"""Command -> number of its arguments -> the longer LaTeX, in which ``#1`` is the first argument.
+
+A star after the command is skipped.
+"""
 
 OF_ORDER: Mapping[str, Mapping[int, str]] = {
     "\\dv": {1: r"\frac{d^{#0}}{d#1^{#0}}", 2: r"\frac{d^{#0} #1}{d#2^{#0}}"},
@@ -41,7 +44,7 @@ DROPPED = {
     **dict.fromkeys(("\\phantom", "\\hphantom", "\\vphantom"), 1),
     **dict.fromkeys(("\\nonumber", "\\hfill", "\\mathstrut", "\\strut", "\\allowbreak", "\\thinspace", "\\enspace"), 0),
 }
-"""Commands that say nothing about the formula -> the number of their arguments."""
+"""Command that says nothing about the formula, such as ``\\label`` -> the number of arguments left out with it."""
 
 BRACED = ("\\underbrace", "\\overbrace")
 """Commands after which an index or power is a remark on the formula, not a part of it."""

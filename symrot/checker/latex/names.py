@@ -23,10 +23,10 @@ SPELLED = {
     "Re": "real_part", "Im": "imaginary_part", "arg": "arg",
     **{name: name for name in BUILT_IN},
 }  # fmt: skip
-"""Name in upright letters -> the function that it means."""
+"""Name in upright letters, as in ``\\mathrm{tr}`` -> the function that it means: trace for tr."""
 
 PART = "1:3"
-"""The subscript of the vector part of a quaternion with the components q_1, q_2, q_3."""
+"""The subscript in ``q_{1:3}``, the vector part (q_1, q_2, q_3) of a quaternion."""
 
 MARKS_IN_SUBSCRIPTS = {
     "+": "plus", "-": "minus", "*": "star", "\\ast": "star", "\\perp": "perp", "\\parallel": "par", "\\|": "par",
@@ -35,7 +35,7 @@ MARKS_IN_SUBSCRIPTS = {
 """Sign or command in a subscript -> the text for it in a name: "plus" for +."""
 
 TOTALS = ("M", "F", "N", "T", "tau", "Gamma")
-"""Letters of torques and forces, of which a sum without limits is the total."""
+"""Letters of torques and forces: ``\\sum M`` without limits is read as one quantity, their total."""
 
 BOLD = ("\\mathbf", "\\bm", "\\boldsymbol")
 VECTOR_MARKS = ("\\vec", *BOLD, "\\hat", "\\overrightarrow", "\\underline")

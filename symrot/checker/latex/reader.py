@@ -206,7 +206,7 @@ class _Interpreter(CalculusPart):
         return [line]
 
     def equations(self) -> list[Line]:
-        """Parse equations and return them as lines; a line that starts with ``=`` continues the line before it."""
+        """Parse equations and return them as lines; a line such as ``= c`` or ``+ c`` continues the line before it."""
         self.items = [item for item in self.items if item.text != "&"]
         while isinstance(self.peek(), tree.Row) and self.peek(1).kind == "end":  # \boxed{..}
             self.enter(self.peek())
@@ -224,7 +224,10 @@ class _Interpreter(CalculusPart):
         return lines
 
     def chains(self, between: Collection[str] = (), line: Line | None = None) -> list[Line]:
-        """Parse chains ``a = b = c``, with marks such as a comma ``between`` them; return one line for each chain."""
+        """Parse chains ``a = b = c``, with marks such as a comma ``between`` them; return one line for each chain.
+
+        ``line`` is the beginning of the first chain if it is parsed already.
+        """
         lines: list[Line] = []
         while True:
             # otherwise the beginning of the first chain is already parsed
@@ -267,7 +270,10 @@ class _Interpreter(CalculusPart):
         return True
 
     def head(self) -> Node | None:
-        r"""Parse the left side of a definition of a matrix, ``R(\phi) =``, and return the name R; else None."""
+        r"""Parse the left side of a definition, ``R(\phi) =``, and return the name R; None if it may be a product.
+
+        The right side must have a matrix, a cross product, or all letters in the brackets of the left side.
+        """
         # brackets around it, as in [M_3(\theta)] =, are left out
         opened = 1 if self.at("[") else 0
         item = self.peek(opened)

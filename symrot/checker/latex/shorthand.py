@@ -15,9 +15,9 @@ FUNCTIONS: tuple[Mapping[str, str], ...] = (
     {"c": "cos", "s": "sin", "v": "vers"},
     {"C": "cos", "S": "sin", "V": "vers"},
 )
-"""Letter of a short form -> its function: small letters, and capital letters, which need a C and an S of their own.
+"""Two maps, letter of a short form -> its function, for small and for capital letters; vers is the versine 1 - cos.
 
-The function vers is the versine 1 - cos.
+A text must have both a cosine and a sine from one of the maps: c and s, or C and S.
 """
 
 NO_ANGLES = ("pi", "omega", "Omega")
@@ -29,7 +29,7 @@ ANGLE_NUMBERS = "123"
 _DEFINITION = re.compile(
     r"(?:(?:c|C)_?\{?(\\[A-Za-z]+)\}? *= *\\cos *[({ ]*\1[)} ]*|(?:s|S)_?\{?(\\[A-Za-z]+)\}? *= *\\sin *[({ ]*\2[)} ]*)"
 )
-"""A definition of a short form, such as ``c_\\theta = \\cos\\theta``; one of its two groups is the angle."""
+"""Pattern of a definition of a short form, ``c_\\theta = \\cos\\theta``; one of its two groups is the angle."""
 
 FEWEST_NUMBERED = 2
 """The smallest number of different cosines, and of different sines, at which letters with numbers, such as c_1, c_2,
@@ -51,7 +51,8 @@ def shorthands(pieces: Sequence[Token], declared: Collection[str] = ()) -> dict[
     pieces : sequence of Token
         The tokens of the text.
     declared : collection of str
-        Names that the claim declares. If c or s is one of them, the text has no short forms.
+        Names that the claim declares. If c, s or v, or one with a subscript such as c_1, is among them, the text has no
+        short forms in small letters; likewise C, S and V exclude those in capital letters.
 
     Examples
     --------

@@ -55,14 +55,14 @@ ENDS = frozenset([
 """Texts of the LaTeX nodes that cannot start a factor; the node at the end of a formula has the text ""."""
 
 NORM = re.compile(r"\\(?:\||lVert|Vert)(.*?)\\(?:\||rVert|Vert)")
-"""A norm, such as ``\\|a + b\\|``: the names in it are vectors, or quaternions."""
+"""Pattern of a norm, such as ``\\|a + b\\|``: the names in it are vectors, or quaternions."""
 
 QUATERNIONS = ("q", "p")
 
 TRIPLE_PRODUCT = re.compile(
     r"\\times\s*(?:\\left)?\([^()+-]*\\times|\([^()]*\\times[^()]*\)\s*\\times|\)\s*\\times\s*(?:\\left)?\("
 )
-r"""A product ``a\times(b\times c)``, ``(a\times b)\times c`` or ``(a + b)\times(a - b)``."""
+r"""Pattern of a product ``a\times(b\times c)``, ``(a\times b)\times c`` or ``(a + b)\times(a - b)``."""
 
 
 class SumsPart(Cursor):
@@ -215,7 +215,10 @@ class SumsPart(Cursor):
                 factors.append(self.factor())
 
     def divisor(self, factors: list[Node], slash: tree.Node) -> tuple[Node, bool]:
-        """Parse the divisor after a slash, such as ``2m`` in ``p^2/2m``; return it, and whether it surely ends here."""
+        """Parse the divisor after a slash, such as ``2m`` in ``p^2/2m``; return (divisor, whether its end is certain).
+
+        The end is certain only in a fraction of numbers: the divisor in ``1/2 m`` is 2.
+        """
         first = self.peek()
         below = [self.factor()]
         if len(factors) == 1 and factors[0].kind == below[0].kind == "number":

@@ -277,4 +277,4 @@ class Writer:
         "number": number, "name": name, "sum": sum, "neg": negative, "product": product, "inv": inverse, "power": power,
         "call": call, "transpose": transpose,
     }  # fmt: skip
-    """Kind of a tree -> the function that writes it; index and list have no LaTeX here."""
+    """Kind of a tree -> the function that writes it; trees of the kinds index and list cannot be written."""

@@ -17,7 +17,7 @@ from symrot.checker.claim.interpreter import atoms_of
 __all__ = ["PRIME", "Fingerprint", "NotInField", "Values", "fingerprint", "in_lowest_terms", "values_at"]
 
 PRIME = 2**61 - 1  # different functions agree at a random point with a probability of 1e-18
-"""A prime that is 3 modulo 4: the circle then has no points at infinity, and one power gives a square root."""
+"""A prime that is 3 modulo 4: 1 + u^2 is then never 0, as cosines and sines need, and a square root is one power."""
 DRAWS = tuple((pow(3, 101 + 2 * n, PRIME), pow(3, 102 + 2 * n, PRIME)) for n in range(48))
 """Pairs (value of one symbol, value of all other symbols), tried in turn until the formula is defined."""
 MOST_UNDEFINED = 3

@@ -243,7 +243,7 @@ def _views(shape: tuple[int, int] | None, count: int) -> Iterator[View]:
 def _permuted(entries: Sequence[Expr], shape: tuple[int, int] | None) -> Iterator[View]:
     """Yield the arrangements of a symmetric 3 x 3 matrix with the axes x, y, z in another order.
 
-    Nothing is yielded for other formulas.
+    Yield nothing for any other formula.
     """
     if shape != (3, 3) or any(entries[3 * i + j] != entries[3 * j + i] for i in range(3) for j in range(i)):
         return
@@ -344,7 +344,11 @@ def _keeps_rates(pairs: Sequence[tuple[str, str]]) -> bool:
 
 
 def _keeps_units(pairs: Sequence[tuple[str, str]]) -> bool:
-    """Return whether, in each of ``pairs``, books use the claim's letter with the unit of the known symbol."""
+    """Return whether books use each letter of a claim with the unit of the known symbol for which it stands.
+
+    ``pairs`` are (known symbol, letter of the claim). A symbol without a unit may have any letter; x, y and z may have
+    any letter that books do not use with another unit.
+    """
     # a symbol without unit may have any letter; x, y, z may be the components of any vector
     with_unit = [(mine, other) for mine, other in pairs if UNIT_OF_NAME.get(mine) != "1"]
     return all(agree_in_unit(mine, other) for mine, other in with_unit) and all(

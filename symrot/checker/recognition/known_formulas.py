@@ -139,7 +139,10 @@ def _selected(
     longest: int,
     is_relation: bool = False,  # kept in each formula: relations are looked up for equations only
 ) -> Iterator[tuple[str, Known]]:
-    """Yield (key, formula) for formulas with at least ``least`` symbols and at most ``longest`` characters."""
+    """Yield (key, formula) for formulas with at least ``least`` symbols and at most ``longest`` characters.
+
+    Leave out formulas without a fingerprint, repetitions, and most formulas whose entries are just different symbols.
+    """
     general = (*GENERAL, *OF_ONE_ENTRY)
     of_letters = {*(name for name, *_ in _formulas_of(along_axes)), GYROSCOPE, *SCALAR_PRODUCTS, *ANY_VECTORS, *general}
     groups = (tops, one_axis, _solved, rotations, bodies, points)

@@ -71,7 +71,7 @@ def _pair_of_quantities(known: str, new: str) -> tuple[str, str]:
 
 @cache
 def _orders(known: str, new: str) -> tuple[frozenset[tuple[int, ...]], frozenset[tuple[int, ...]]]:
-    """Return (orders, orders for a transposed matrix): those in CYCLIC that turn the axes of ``known`` into ``new``'s.
+    """Return (orders, orders for a transposed matrix): the orders in CYCLIC that turn ``known`` to the axes of ``new``.
 
     The order (2, 3, 1) turns omega_1 into omega_2, and R_12 into R_23 or, in a transposed matrix, into R_32. A name
     without axes allows all orders.

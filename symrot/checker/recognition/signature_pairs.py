@@ -27,9 +27,10 @@ def name_of(atom: Expr) -> str:
 
 
 def pairings(theirs: Fingerprint, own: Fingerprint, order: Sequence[int]) -> Iterator[dict[Expr, Expr]]:
-    """Yield the ways to pair all symbols of a known formula ``theirs`` with those of ``own``, as dictionaries.
+    """Yield {symbol of a known formula: symbol of a claim's formula} for the ways to pair all their symbols.
 
-    ``order`` is the order in which the entries of ``own`` are compared.
+    ``theirs`` is the fingerprint of the known formula, ``own`` that of the claim's formula, whose entries are compared
+    in ``order``. Yield nothing if the signatures differ.
     """
     # symbols are paired if their signatures are equal; pairs with equal names come first
     mine: dict[Values, list[Expr]] = {}

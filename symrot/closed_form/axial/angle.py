@@ -19,7 +19,10 @@ from symrot.formula import exact_numbers as number
 __all__ = ["FEW", "LARGE", "SMALL", "Turning", "exp_and_expm1"]
 
 FEW = 64
-"""Up to this number of samples with large angles, integers replace double-double numbers, which take longer."""
+"""Largest number of samples with large angles that are computed in integers, which is then faster than NumPy.
+
+More samples are computed in sums of two doubles, if their angles are below :data:`LARGE`.
+"""
 
 SMALL = 1 / 16
 """Largest angle, in revolutions, for which doubles suffice; their error is then at most 2e-16 rad."""

@@ -23,7 +23,7 @@ Ratio = tuple[int, int]
 """A rational number: numerator and positive denominator."""
 
 TOO_MANY_TURNS, OUT_OF_RANGE = 1, 2
-"""Return values of the loops: a sample has too many revolutions, or a number exceeds the range of doubles."""
+"""Return values of the compiled loops: a sample has too many revolutions; a number exceeds the range of doubles."""
 
 _LARGEST = 200  # 2^200 replaces larger numbers: a product with it exceeds the revolutions that the loops can count
 _BITS = 260  # more bits than a sum of four doubles represents

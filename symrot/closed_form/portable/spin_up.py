@@ -56,7 +56,10 @@ def _circle(turns: dd.Pair) -> tuple[Floats, Floats]:
 
 
 class PortableSpinUp:
-    """The motion of a symmetric body driven about its axis, from its constants and Taylor polynomials (``table``)."""
+    """The motion of a symmetric body driven about its axis, from its constants and a table of Taylor polynomials.
+
+    The polynomials give the attitude near resonance; without samples there, ``table`` may be None.
+    """
 
     def __init__(self, constants: Sequence[float], table: Floats | None) -> None:
         # the constants of symrot.closed_form.spin_up.integers; table may be None without samples near resonance

@@ -60,7 +60,8 @@ class Compiled:
     axis : 0, 1 or 2
         Index of the body axis about which the torque acts.
     numbers : 20 floats
-        The numbers that ``symrot_spin_up_prepare`` takes.
+        Two moments (normal to the axis, about it), the torque, the angular velocity and the quaternion at the start,
+        each number as hi and lo: the arguments of the C function ``symrot_spin_up_prepare``.
 
     Attributes
     ----------

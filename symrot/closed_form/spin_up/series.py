@@ -35,7 +35,7 @@ W is the transverse angular velocity, and s the rate at which the axial rate gro
 """
 
 MOST = 1e13
-"""Phase, rad, above which double-double numbers have too few digits."""
+"""Angle of rotation, rad, above which sums of two doubles have too few digits for it."""
 
 DEGREE = 12
 """Degree of the polynomials in y that replace the asymptotic series for the vector n and the angle delta."""

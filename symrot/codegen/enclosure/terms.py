@@ -24,7 +24,7 @@ BOUNDED = ("sin", "cos")  # functions of a*t + b that are bounded at every time
 
 
 class Enclosure(NamedTuple):
-    """The terms of the rates dy/dt that must be bounded, because a step may miss a pulse in them."""
+    """The terms of the rates dy/dt that must be bounded, because a step may miss a pulse (a short change) in them."""
 
     system: Recurrences
     # Taylor series to evaluate, each after its operands: indices into system.series

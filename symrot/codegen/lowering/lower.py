@@ -24,7 +24,7 @@ from symrot.formula.tree import Node, children, names, rename, text
 __all__ = ["ANONYMOUS", "Lowered", "lower"]
 
 ANONYMOUS = "#"
-"""First character of the name of a temporary that has no descriptive name yet."""
+"""First character of the preliminary name, such as ``#2``, of a temporary that will get a descriptive name."""
 
 
 @dataclass(frozen=True)

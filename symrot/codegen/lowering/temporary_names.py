@@ -44,7 +44,7 @@ class _Product:
     def name(self) -> str | None:
         """Return the name of this product: ``two_q1_q2`` for ``2*q1*q2``, ``inv_sin_theta`` for ``1/sin_theta``.
 
-        None for a number, and for coefficients without a word, such as 7.
+        The result is None for a mere number, and for a coefficient without a word in ``WORDS``, such as 7.
         """
         size = abs(self.coefficient)
         divisor = [str(size.denominator)] if size.numerator == 1 and size not in WORDS else []

@@ -52,8 +52,10 @@ class Real:
 
     @cached_property
     def near_functions(self) -> dict[str, str]:
-        """The C names of all functions that batches call: ``sin`` is ``symrot_sin`` of ``symrot_math.h``."""
-        # valid for moderate angles only
+        """The C names of the functions of ``symrot_math.h`` by which batches replace others: ``sin`` -> ``symrot_sin``.
+
+        They are valid for moderate angles only. Functions without such a replacement have the names in ``functions``.
+        """
         own = {name: f"symrot_near_{name}{self.suffix}" for name in NEAR}
         shared = {"sin": "sin", "cos": "cos", "atan2": "atan2", "select_ge": "choose_ge"}
         return self.functions | own | {name: f"symrot_{other}{self.suffix}" for name, other in shared.items()}
@@ -83,9 +85,9 @@ def _as_float(value: float) -> float:
 def c_expression(node: Node, real: Real = DOUBLE, near: bool = False) -> str:
     """Return a formula as a C expression of type ``real``, with brackets that preserve the order of evaluation.
 
-    With ``near``, functions of ``symrot_math.h``, such as ``symrot_sin``, are called.
+    With ``near``, functions of ``symrot_math.h``, such as ``symrot_sin``, are called, which compilers vectorise but
+    which are valid for moderate angles only.
     """
-    # compilers vectorise the near functions, which are valid for moderate angles only
     return text(rename(node, functions=real.near_functions if near else real.functions), 0, real.literal)
 
 

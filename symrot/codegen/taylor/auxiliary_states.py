@@ -131,7 +131,10 @@ class _Closure:
         return total
 
     def rate(self, variable: int) -> Polynomial:
-        """Return the time derivative of variable number ``variable`` along the motion, as a polynomial."""
+        """Return the time derivative along the motion of variable number ``variable`` of the polynomials.
+
+        The derivative is a polynomial too; :class:`_Open` is raised if it is not.
+        """
         kind, what = self.variables[variable]
         if kind == "constant":
             return Polynomial({})
@@ -199,9 +202,9 @@ class _Closure:
     # -------------------------------------------------------------------------------------------- closing
 
     def adjoin(self, inner: Polynomial) -> tuple[int | None, Fraction, Fraction]:
-        """Write a polynomial as ``factor*state + number`` with an auxiliary state, and return (index, factor, number).
+        """Return (index, factor, number) such that ``inner`` is ``factor*state + number`` with an auxiliary state.
 
-        The index is None if the polynomial is a number.
+        The index is that of the auxiliary state, which is added if it is new; it is None if ``inner`` is a number.
         """
         # polynomials that differ only by the identity q0^2 + q1^2 + q2^2 + q3^2 = 1 must give the same state
         degrees = {self.degree(monomial) for monomial in inner.terms}

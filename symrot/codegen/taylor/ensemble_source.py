@@ -24,7 +24,7 @@ LOAD_OF_LOOP = 24  # accumulators and factors of a loop: by measurement, half mo
 
 
 class Convolution(NamedTuple):
-    """A convolution ``sum(a[k] b[n-k])`` of the coefficients of two series, given by their indices a and b."""
+    """A convolution ``sum(a[k] b[n-k])`` of the Taylor coefficients of two series, given by their indices a and b."""
 
     a: int
     b: int
@@ -358,7 +358,7 @@ class _Jet:
         return groups
 
     def _load(self, group: Sequence[int]) -> int:
-        """Return the number of registers that a C loop over the slots ``group`` needs."""
+        """Return the number of registers that a C loop needs to add up the convolutions of the slots ``group``."""
         terms = [c for i in group for _, c in self.slots[i].terms]
         # two sums of each slot, the values of each series u for two k, and one value of each series v
         return 2 * len(group) + 2 * len({c.a for c in terms}) + len({c.b for c in terms})

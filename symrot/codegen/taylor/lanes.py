@@ -87,7 +87,7 @@ def lay_out(system: Recurrences, edges: Sequence[int]) -> Layout:
 
 
 def cost(layout: Layout) -> int:
-    """Return an estimate of the time for one order of the series: the number of columns plus the number of rows."""
+    """Return an estimate of the time that one coefficient of all series takes: the number of columns and rows."""
     return len(layout.columns) + len(layout.rows)
 
 
@@ -216,7 +216,10 @@ class _Placer:
     # -------------------------------------------------------------------------------------------- packs
 
     def pack(self, items: Sequence[tuple[int, int] | None]) -> Pack:
-        """Return the pack (vector of four series) of up to four ``items``, each a pair (sign, series) or None."""
+        """Return the vector (pack) of up to four ``items``, each a pair (sign, index of a series) or None.
+
+        A lane with None gets any series with which reading the pack costs no extra time.
+        """
         addresses = [None if item is None else self.address(*item, lane) for lane, item in enumerate(items)]
         first = next(address for address in addresses if address is not None)
         if (
@@ -224,7 +227,6 @@ class _Placer:
             and len(addresses) - addresses.count(None) > 1
         ):
             return (first,) * LANES
-        # a lane without an item gets a series with which the pack costs no extra time
         return tuple(Address(1, first.row, lane) if a is None else a for lane, a in enumerate(addresses))
 
     def address(self, sign: int, series: int, lane: int) -> Address:

@@ -127,7 +127,7 @@ class _Jet:
         return f"x[{row}]" if row < self.own_rows else f"u{row}"
 
     def newest(self, pack: Pack) -> str:
-        """Return the C expression for the coefficients of order n, just computed, of a pack (vector of four series)."""
+        """Return the C expression for the coefficients number n, just computed, of a pack (vector of four series)."""
         return f"l{self.packs[pack]}" if pack in self.packs else self.picked(pack)
 
     def picked(self, pack: Pack) -> str:

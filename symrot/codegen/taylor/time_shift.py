@@ -133,7 +133,7 @@ class _Mover:
     def gathered(self, node: Node) -> _Form | None:
         """Return a sum with its terms of the form a t + b added up: ``(t - 2) + x + 3`` becomes ``(t + 1) + x``.
 
-        None if that changes nothing.
+        The result is None if the whole sum is of this form, or if there are no two such terms, at least one with t.
         """
         lines: list[tuple[Node, ...]] = []
         others: list[tuple[bool, _Form]] = []
@@ -238,7 +238,8 @@ def _is_shifted(form: _Form) -> bool:
 def _terms(node: Node, parts: list[tuple[Node, ...] | None]) -> tuple[Node, ...] | None:
     """Return the coefficients in t, lowest power first, of an operation on polynomials with the coefficients ``parts``.
 
-    None if an operand (None in ``parts``) or the result is no polynomial.
+    The result is None if an operand is no polynomial (None in ``parts``), or if the result is none, or one of a degree
+    above ``HIGHEST``.
     """
     if any(part is None for part in parts):
         return None

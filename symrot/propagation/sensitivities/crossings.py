@@ -45,7 +45,7 @@ class Flip(NamedTuple):
 
 
 class Crossings:
-    """The switches of a motion, in their order, with the derivatives after each.
+    """The switches of a motion, in their order: the derivatives of the states after each, and of the switching times.
 
     Parameters
     ----------
@@ -117,7 +117,7 @@ class Crossings:
             change = self._at_once(before, flips, alone)
             self._last = before, after.begin, flips, alone
             if change is not None:
-                self._note(after.begin, rows, rows[first])
+                self._append_switches(after.begin, rows, rows[first])
                 return np.asarray(by - change)
         if not causes:
             for mode in released:
@@ -125,7 +125,7 @@ class Crossings:
                 speed = value.along(f)
                 grazes = not abs(speed) > STEEP * value.size(f)
                 rows[mode] = np.full(len(by.T), np.nan) if grazes else 0.0 - value.change(by) / speed
-        self._note(after.begin, rows, rows[first] if first is not None else None)
+        self._append_switches(after.begin, rows, rows[first] if first is not None else None)
         return by if first is None else np.asarray(by - np.outer(later - f, rows[first]))
 
     def _at_once(self, interval: Interval, flips: dict[str, Flip], alone: bool) -> Floats | None:
@@ -185,7 +185,7 @@ class Crossings:
             return None
         return np.asarray(jumps.T @ np.array([flips[group[0]].time for group in groups]))
 
-    def _note(self, instant: Instant, rows: Mapping[str, Floats], others: Floats | None) -> None:
+    def _append_switches(self, instant: Instant, rows: Mapping[str, Floats], others: Floats | None) -> None:
         """Append the switches at an instant to :attr:`switchings`, with the derivatives of their time by the variables.
 
         ``rows`` has these m derivatives for each function, named by its mode; ``others`` are those for any other

@@ -55,8 +55,9 @@ class Interval:
 def smooth_intervals(motion: SwitchedMotion, end: float) -> tuple[list[Interval], dict[tuple[float, str], str]]:
     """Return the smooth intervals of a motion to the time ``end``, s, and a dict of its switches.
 
-    A key of the dict is a pair (time, s, function as the user wrote it, such as ``"sign(omega_3)"``). The value says
-    what the argument of the function did then: ``"passed"`` (zero), was ``"held"`` at zero or ``"released"`` from it.
+    A key of the dict is a pair: time, s, and function as the user wrote it, such as ``"sign(omega_3)"``. The value is
+    ``"passed"``, ``"held"`` or ``"released"``: the argument of the function passes zero, stays there from then on, or
+    leaves zero, where it was held.
 
     Raises
     ------

@@ -70,7 +70,7 @@ def variation_source(
     source: Callable[..., str],
     rough: bool = False,
 ) -> str:
-    """Return the C source of a library that integrates the motion and its derivatives together.
+    """Return the C source of a library that integrates a motion together with its derivatives by variables.
 
     Parameters
     ----------
@@ -135,7 +135,7 @@ class MotionLibrary:
 
     @cached_property
     def _rough_path(self) -> Path:
-        """The library that integrates by Dormand-Prince 8(5,3)."""
+        """The path of the library that integrates by Dormand-Prince 8(5,3), compiled on first use."""
 
         def source(program: Program, edges: Sequence[int], scales: Sequence[float]) -> str:
             from symrot.codegen.enclosure.source import enclosure_source

@@ -31,10 +31,11 @@ def beside(guards: Guards, interval: Interval, signs: Mapping[str, int]) -> Inte
 
 
 def hold_at_rest(guards: Guards, interval: Interval) -> None:
-    """Give an interval equations that hold at zero the guards (arguments of sign, abs, ..) which stay at zero in it.
+    """Give an interval equations that hold at zero, where possible, the guards that stay at zero in it.
 
-    Modes of guards for which there are no such equations are appended to ``interval.resting``. A guard is left alone if
-    the rates and their derivatives are the same on both sides of its zero.
+    A guard is the argument of sign, abs, .. The modes of guards that cannot be held are appended to
+    ``interval.resting``. A guard is left alone if the rates and their derivatives are the same on both sides of its
+    zero.
     """
     resting = [mode for mode in interval.regime.formulas if mode not in interval.held and rests(guards, interval, mode)]
     for mode in resting:

@@ -1,4 +1,7 @@
-"""The derivatives just after the start of a motion, where guards may be zero or held at zero."""
+"""The derivatives just after the start of a motion, where guards may be zero or held at zero.
+
+A *guard* is the argument of a switching function (sign, abs, ..).
+"""
 
 from dataclasses import replace
 from itertools import product

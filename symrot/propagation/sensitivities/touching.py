@@ -22,7 +22,10 @@ FINE, ZOOMS = 8, 12  # points in a step of a motion, and the number of times tha
 
 
 def refuse_touching(guards: Guards, interval: Interval) -> None:
-    """Raise PropagationError if the argument of a function with a jump (sign, ..) touches zero inside an interval."""
+    """Raise PropagationError if the argument of a function with a jump (sign, ..) touches zero inside an interval.
+
+    An argument of time alone that no variable changes is allowed: it touches zero in all nearby motions too.
+    """
     regime = interval.regime
     modes = {guard.mode for guard, on in zip(regime.guards, regime.active(interval.modes), strict=True) if on}
     for mode in sorted(modes & regime.formulas.keys() - interval.held):
@@ -31,7 +34,6 @@ def refuse_touching(guards: Guards, interval: Interval) -> None:
         t = _touching(guards, interval, mode)
         if t is None:
             continue
-        # a guard of time alone that no variable changes touches zero in all nearby motions
         guard = guards.guard(interval, mode, t, interval.last)
         if guard.states.any() or guard.variables.any():
             raise guards.refusal(interval.zero.after(t), f"the argument of {guards.name(mode)} touches zero")

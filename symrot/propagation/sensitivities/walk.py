@@ -1,4 +1,4 @@
-"""A motion through the switches of its torques, with its derivatives at any time."""
+"""A motion through the switches of its torques, with its derivatives by variables at any time."""
 
 from collections.abc import Callable
 from dataclasses import replace

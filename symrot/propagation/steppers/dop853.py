@@ -167,7 +167,7 @@ def integration(
 
 
 class _Clocked(Integration):
-    """Integration with a kernel that counts time from an epoch, which is moved repeatedly to the present time."""
+    """Integration with a kernel that counts time from an epoch; the epoch is moved repeatedly to the present time."""
 
     def __init__(self, clock: Clock, *arguments: Any) -> None:
         super().__init__(*arguments)

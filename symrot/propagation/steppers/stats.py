@@ -69,7 +69,10 @@ class Stats(NamedTuple):
 
 
 def rounding_warning(t: float) -> str:
-    """Return a sentence that warns of errors beyond the time t, s, of ``rounded_beyond``, for torques as formulas."""
+    """Return a sentence that warns of errors beyond the time t, s, of a motion under formulas that contain the time.
+
+    t is a time of ``Stats.rounded_beyond``.
+    """
     return (
         f"beyond t = {t!r} s the rounding of the torque, a formula of the time, may change the motion by more than "
         "the tolerance; choose a larger tolerance"
@@ -77,7 +80,11 @@ def rounding_warning(t: float) -> str:
 
 
 def stats_of(cost: Any, seconds: float, switchings: Iterable[Switching], rounded_beyond: Iterable[float] = ()) -> Stats:
-    """Return the statistics of a motion from ``cost``: accepted steps, rejected steps and evaluations."""
+    """Return the statistics of a motion from its cost and its switches, which are sorted by time.
+
+    ``cost`` has the numbers of accepted steps, rejected steps and evaluations; ``seconds`` is the computing time.
+    ``rounded_beyond`` has times, s, beyond which rounding errors may exceed the tolerance.
+    """
     accepted, rejected, evaluations = map(int, cost)
     listed = tuple(sorted(switchings))
     times = tuple(sorted({change.t for change in listed}))  # coinciding switches count once

@@ -56,9 +56,9 @@ class Guards(RunState):
         return " and ".join(self._name(mode) for mode in sorted(self.held))
 
     def _regime(self, modes: Modes, held: frozenset[str] | None = None) -> Regime:
-        """Return the smooth motion for given values of sign, abs, .., with the arguments of ``held`` at zero.
+        """Return the smooth motion for given values of the functions sign, abs, .., of which some are held.
 
-        By default these are the arguments that are now held, :attr:`held`.
+        ``held`` names the functions whose arguments stay at zero, by default those that are held now.
         """
         try:
             return self.system.regime(self.held if held is None else held, modes)
@@ -71,9 +71,9 @@ class Guards(RunState):
             ) from None
 
     def _guard_value(self, mode: str, place: tuple[float, Floats] | None = None) -> float:
-        """Return the argument of a switching function, now or at ``place``, (time, states).
+        """Return the value of a switching function's argument, now or at ``place``, a pair (time, states).
 
-        For floor(x) it is x minus the present floor.
+        For floor(x) it is x minus the present floor. ``mode`` names the number that replaces the function in formulas.
         """
         # the floor is its value n in the present equations: it changes where x - n is 0 or 1
         regime = self._regime(self.modes)
@@ -93,7 +93,10 @@ class Guards(RunState):
         return {name.removesuffix(" of t"): column for name, column in zip(names, quantities.T, strict=True)}
 
     def _has_no_value(self, regime: Regime, mode: str, times: Floats, states: Floats) -> NDArray[np.bool_]:
-        """Return at which times an argument of sign, floor, .. has no value, with the motion's error allowed for."""
+        """Return, for each of ``times``, whether the argument of a function (sign, floor, ..) has no value there.
+
+        An argument that lies outside its domain by no more than the error of the motion counts as having a value.
+        """
         columns = self._columns(times, states)
         rate = np.sqrt(sum(columns[f"omega_{i}"] ** 2 for i in (1, 2, 3)))
         sizes = {name: rate if name.startswith("omega") else np.ones_like(times) for name in columns}
@@ -118,7 +121,7 @@ class Guards(RunState):
         # the guard falls from >= 0 to <= 0
         return before >= 0.0 >= after and before > after
 
-    def _inside(self, mode: str) -> set[str]:
+    def _names_inside(self, mode: str) -> set[str]:
         """Return the names of the variables and modes in the argument of the function with the mode ``mode``.
 
         For abs(x + sign(y)) these are x and the mode of sign(y), the name of the number that replaces sign(y).
@@ -155,10 +158,13 @@ class Guards(RunState):
         return False
 
     def _located(self, regime: Regime, guard: Guard, t: float) -> Instant:
-        """Return the time near t at which a guard (argument of sign, abs, ..) is zero, as an :class:`Instant`."""
+        """Return the time near t at which a guard (argument of sign, abs, ..) is zero, as an :class:`Instant`.
+
+        If the guard depends on time alone, a Newton step gives its zero to twice the digits of t. If it depends on
+        states too, or if the step fails, the result is the time t itself.
+        """
         instant = self.zero.after(t)
         if guard.mode in self.held or guard.mode not in regime.of_time:
-            # only if the guard depends on time alone, a Newton step gives its zero to twice the digits
             return instant
         switch, aside = self.by_name[guard.mode], NEARBY * abs(t)
         goal = 0.0 if switch.kind == "sign" else max(guard.change, 0)

@@ -224,7 +224,7 @@ class ModeChanges(Guards):
         then jumped, and abs may switch again.
         """
         last = len(self.order) - self.order[::-1].index(mode)
-        return bool(self._inside(mode) & set(self.order[last:]))
+        return bool(self._names_inside(mode) & set(self.order[last:]))
 
     def _is_rounding(
         self, regime: Regime, guard: Guard, piece: Piece, states: Callable[[Floats], Floats]

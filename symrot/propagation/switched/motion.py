@@ -95,7 +95,10 @@ class SwitchedMotion(MotionInParts):
         return [chunk.piece() for chunk in chunks], states
 
     def dense(self, span: tuple[float, float]) -> Recording:
-        """Return a function from n times, s, within ``span`` to the states, shape (n, N), through all switches."""
+        """Return a function that takes n times within ``span``, s, and returns the N states, shape (n, N).
+
+        The span may contain any number of switches.
+        """
         chunks: list[Chunk] = []
         cost, began, changes = np.zeros(3, dtype=np.int64), perf_counter(), dict[tuple[float, str], str]()
         for end in {min(*span, self.start), max(*span, self.start)} - {self.start}:

@@ -47,7 +47,7 @@ class Chunk(NamedTuple):
     own_piece: Piece
 
     def states(self, times: Floats) -> Floats:
-        """Return the states, shape (n, N), at times of the scene, s."""
+        """Return the N states at n times of the scene, s, shape (n, N)."""
         return self.own_states(self.zero.since(times))
 
     def piece(self) -> Piece:
@@ -95,7 +95,7 @@ class SwitchedRun(ModeChanges):
             self.end = 0.0
 
     def _check_start(self) -> None:
-        """Raise IntegrationStopped if the start allows two motions."""
+        """Raise IntegrationStopped if the motion starts at a switch of a function and can go on with either value."""
         for switch in self.system.switches:
             mode = switch.mode
             if mode not in self.system.undecided or not hold(switch.where, self.modes) or self.t == self.end:
@@ -205,7 +205,7 @@ class SwitchedRun(ModeChanges):
         if lost:
             raise lost[0]
         if violated:  # an argument that jumped with another function is corrected before others cross zero
-            return min(violated, key=lambda guard: not self._inside(guard.mode) & set(self.order))
+            return min(violated, key=lambda guard: not self._names_inside(guard.mode) & set(self.order))
         if left:
             # a sign left zero: the motion is computed again from there
             return None
@@ -288,7 +288,10 @@ class SwitchedRun(ModeChanges):
     def _pass_on(
         self, consume: Consumer, regime: Regime, active: list[bool], chunk: Chunk
     ) -> IntegrationStopped | None:
-        """Pass ``chunk`` to ``consume``, up to where an argument of sign, floor, .. has no value; return that error."""
+        """Pass ``chunk`` to ``consume``, up to where an argument of sign, floor, .. has no value.
+
+        Return the error that says so, or None if all arguments have values in the whole chunk.
+        """
         modes = {guard.mode for guard, on in zip(regime.guards, active, strict=True) if on} - self.held
         partial = [mode for mode in sorted(modes) if mode in regime.may_lose_value]
         if not partial:

@@ -17,12 +17,12 @@ CHATTER = 50  # number of recent switches whose times are stored
 
 
 class RunState:
-    """Present state of a motion under torques that switch, during its computation; the last switch is at time 0.
+    """Present state of a motion under torques that switch, during its computation; time is counted from ``zero``.
 
     Attributes
     ----------
     zero : Instant
-        The instant from which time is counted: the last switch.
+        The instant from which time is counted: the start of the present smooth interval, usually the last switch.
     t, end, start : float
         Present time, end and start of the motion, in s after ``zero``.
     span, side : float
@@ -70,7 +70,7 @@ class RunState:
             self.rounded_beyond.append(zero.after(self.rounding.beyond).high)
 
     def clock(self, regime: Regime, stepped: Any) -> Callable[[float], tuple[Any, list[float]]] | None:
-        """Return a function that takes an epoch, s after the last switch, and returns rates and their parameters.
+        """Return a function that takes an epoch, s after :attr:`zero`, and returns rates and their parameters.
 
         The rates are ``stepped``, a library or a Python function; with these parameters they take the time since the
         epoch. Return None if the rates do not depend on time.

@@ -225,9 +225,7 @@ def _names(entry: dict[str, Any], key: str, place: str) -> tuple[str, ...]:
 
 
 def _editable(entry: dict[str, Any], define: Sequence[tuple[str, Node]], place: str) -> tuple[str, ...]:
-    """Return the parts of a claim that repairs may change: those that its key ``editable`` lists, by default both
-    sides.
-    """
+    """Return the parts of a claim that repairs may change: the parts in its key ``editable``, by default both sides."""
     parts = tuple(entry.get("editable", SIDES))
     known = (*SIDES, *(name for name, _ in define))
     for part in parts:

@@ -212,7 +212,9 @@ def _matrix_given(source: str, words: Collection[str]) -> tuple[str, Node] | Non
 
 
 def _with_entries(matrices: Sequence[tuple[str, Node]], relation: Relation) -> Iterator[tuple[str, Node]]:
-    """Yield the definitions ``matrices``, and those of entries in a relation: (R_31, ``R[2, 0]``)."""
+    """Yield pairs (name, formula): the definitions ``matrices``, and (R_31, ``R[2, 0]``) for each entry in a
+    relation.
+    """
     names = dict.fromkeys(str(node.value) for node in nodes_of(*relation[1:]) if node.kind == "name")
     for matrix, tree in matrices:
         yield matrix, tree

@@ -70,7 +70,7 @@ def _wheel() -> Iterator[Relation]:
 
 
 def _trace() -> Iterator[Relation]:
-    """Yield the relation between the trace of a rotation matrix and the angle."""
+    """Yield the relation between the trace of a rotation matrix and the angle of the rotation."""
     matrix = Matrix(rotation_vector.dcm_of_axis_angle())
     n1, n2, n3 = symbols.axis
     total = expand(trace(matrix)).subs(n3**2, 1 - n1**2 - n2**2)

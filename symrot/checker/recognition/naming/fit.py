@@ -59,7 +59,7 @@ OF_ROLL = re.compile(r"d?([pqr]|[Hh](_?\w+)?)")
 """Pattern of an aircraft's rates and of letters of angular momentum: beside these, L may be the rolling torque."""
 
 RATES_OF_AIRCRAFT = {"p": "x1", "q": "y2", "r": "z3"}
-"""Rate of an aircraft -> the axis of this component of its angular velocity in the body frame."""
+"""Rate of an aircraft -> the two names of its axis in the body frame: p is about axis x, or 1."""
 
 COMPONENTS_OF_OMEGA = tuple(f"omega_{axis}" for axis in "xyz123")
 

@@ -53,7 +53,7 @@ PER_NAME = 0.1
 """What each renamed symbol adds to the cost of a known formula near a claim; the likeliest formula costs least."""
 
 PER_PLACE = 0.3
-"""What each contradiction to the quantity's name adds to this cost, such as omega_3 for a first component."""
+"""What each contradiction to the quantity's name, such as omega_3 for a first component, adds to the same cost."""
 
 AS_NEAR = 0.15
 """A claim that is a known moment of inertia plus m d^2 may be right for a parallel axis, and is not called faulty if
@@ -264,8 +264,9 @@ def _with_root(claim: Claim, named: NamedFormula, near: Near) -> tuple[Identific
 
 
 def _loses_letter(claim: Claim, tree: Node) -> bool:
-    """Return whether a letter of the formula ``tree`` cancels, as b does in ``1 + b/b``; True also for an unreadable
-    one.
+    """Return whether a letter of the formula ``tree`` cancels, as b does in ``1 + b/b``.
+
+    True also for a formula that cannot be read.
     """
     # such a formula is not offered as a repair
     try:

@@ -42,7 +42,7 @@ AS_IT_STANDS = "as it stands, it is the"
 """The beginning of a note on the unusual convention in which a doubtful claim is right."""
 
 EXCHANGES = ("wrong_symbol", "sin_cos_swap")
-"""The faults that turn a formula in one convention into a formula in another."""
+"""Codes of the faults that turn a formula in one convention into a formula in another."""
 
 MINUS_PRODUCTS = "products of inertia are those with the minus sign, I_xy = -integral of x*y dm"
 

@@ -10,7 +10,7 @@ from symrot.checker.recognition.usual_letters import UNIT_OF_NAME, plain_name
 __all__ = ["absent_name"]
 
 INDEX = re.compile("([1-3]|[xyz]|([1-3xyz])\\2|[1-3xyz]{2})$")
-"""The index of an axis at the end of a name."""
+"""Pattern of the index of one or two axes at the end of a name: 3, z, zz, 12."""
 
 ORDER = {"phi": "1", "theta": "2", "psi": "3"}
 """Euler angle -> its number in books that call the three angles theta_1, theta_2 and theta_3."""

@@ -81,8 +81,8 @@ class Search(NamedTuple):
 
 
 CLOSE = 1e-8
-"""The largest relative difference, at the first test point, from the needed value of a part; a change of the part with
-a closer value is compared at all points."""
+"""A changed part whose value at the first test point differs from the needed value by at most this, relatively, is
+compared with the needed values at all test points."""
 
 
 def search_of(claim: Claim, named: NamedFormula, letters: Letters, values: Values) -> Search:

@@ -29,16 +29,17 @@ fault, and so has other values under its roots, is likely to be defined there to
 POINTS = 3
 """The number of points at which formulas are compared."""
 MANY = 9
-"""The smallest number of letters at which it is tested on which of them a formula depends.
+"""The smallest number of letters in a formula that is tested for the letters on which it depends.
 
-It may contain a matrix of 3 x 3 letters and, as a trace, depend only on some.
+It may contain a matrix of 3 x 3 letters and depend only on some of them, as the trace does.
 """
 
 
 def letters_of_formula(claim: Claim, named: NamedFormula) -> Letters | None:
     """Return the letters of a claim's formula, with random values that obey the equations among its hypotheses.
 
-    None if the formula or a letter has no value at most random points.
+    Return None if fewer than POINTS of the random points give the formula a value, or if a letter is a matrix or has no
+    value at these points.
     """
     numeric = NumericFilter(claim)
     short = claim.defining  # such as c1 = cos(alpha)
@@ -97,7 +98,10 @@ def _symbols_of(definitions: Mapping[str, Node], numeric: NumericFilter) -> set[
 
 
 def _active(named: NamedFormula, atoms: dict[Node, Values], places: list[PointOfLetters]) -> dict[Node, Values]:
-    """Return the ``atoms`` that change a formula's value: only the diagonal entries for the trace of a matrix."""
+    """Return the ``atoms`` that change a formula's value: only the diagonal entries for the trace of a matrix.
+
+    Atoms on the left side stay too. All ``atoms`` are returned if there are fewer than MANY.
+    """
     formula = named.formula
     if len(atoms) < MANY:
         return atoms  # a formula of few letters depends on all of them
