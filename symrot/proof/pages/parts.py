@@ -98,10 +98,9 @@ def footer(page: Page) -> str:
     proven = f"{count} steps, each proven" if count != 1 else "One step, proven"
     sides = [side for step in page.steps for side in step.printed]
     rest = "" if all(sides) else "; the others are names or words for the expressions that were proven"
-    count_printed = "all" if all(sides) else sum(sides)
     sentence = (
-        f"Of the {len(sides)} sides of equations, {count_printed} are printed from the proof, or were parsed and "
-        f"proven equal to the expression in the proof{rest}."
+        "Sides of equations that are printed from the proof, or were parsed and proven equal to the expression in the "
+        f"proof: {sum(sides)} of {len(sides)}{rest}."
     )
     return (
         f"{proven} when this page was printed: the normal form of left minus right is zero. {sentence} "
