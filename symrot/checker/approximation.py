@@ -29,8 +29,9 @@ __all__ = ["verdict_on_approximation"]
 
 SIGN = re.compile(r"≈|≃|\\(?:approx|simeq)(?![A-Za-z])")
 MOST_POWER, MOST_LEFT_OUT = 8, 4
-"""MOST_POWER is the highest power of x whose Taylor coefficients are compared for ``sin(x) ≈ x``, read for small x. The
-first term that the right side omits, here ``-x^3/6``, is sought among the next MOST_LEFT_OUT powers, here x^2 to x^5."""
+"""MOST_POWER is the highest power of x whose Taylor coefficients are compared for ``sin(x) ≈ x``, read for small x.
+
+The first term that the right side omits, here ``-x^3/6``, is sought among its next MOST_LEFT_OUT powers, x^2 to x^5."""
 
 
 def verdict_on_approximation(source: str) -> Verdict | None:
