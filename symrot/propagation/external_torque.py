@@ -346,7 +346,7 @@ def external_setup(
     user = 0 if source.user is None else source.user.ctypes.data
     inverse = np.linalg.inv(np.array([[float(x) for x in row] for row in plan.scene.body.inertia]))
     addresses = _bits(_address(pointer)), _bits(user)
-    kernel = scene_alone.without_invariants("changed by the torque that is no formula")
+    kernel = scene_alone.without_invariants("changed by the torque without a formula")
     warnings = () if source.samples or math.isfinite(max_step) else (UNKNOWN,)
     setup = Setup(plan, EXTERNAL_TORQUE, tolerance, float(plan.scene.span.start), lambda: kernel, warnings=warnings)
     return ExternalSetup(

@@ -79,8 +79,8 @@ class Motion(ABC):
         if self.has_external_torque:
             return (
                 f"beyond t = {t!r} s the rounding of the times at which the torque is evaluated, to doubles that lie "
-                f"{math.ulp(t):.1e} s apart, may change the motion by more than the tolerance; choose t = 0 nearer to "
-                "the motion, or a larger tolerance"
+                f"{math.ulp(t):.1e} s apart, may change the motion by more than the tolerance; choose the origin of "
+                "time, t = 0, nearer to the motion, or a larger tolerance"
             )
         return rounding_warning(t)
 
