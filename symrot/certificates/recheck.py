@@ -1456,7 +1456,7 @@ HEADER_END = """#ifdef __cplusplus
 def check_header(name, text, kernels):
     """Raise ValueError if a header contains more than the known macros and the prototypes of the C file."""
     # the C file includes the header, so another macro there could change the meaning of the C text
-    text = without_comments(text, f"{name}.h has text that C compilers may read in different ways")
+    text = without_comments(text, f"{name}.h holds text that C compilers may read in different ways")
     lines = [line.strip() for line in text.split("\n") if line.strip()]
     refusal = f"{name}.h holds more than prototypes: expected the macros of symrot and a prototype of each function"
     top = HEADER_TOP.replace("@", name.upper()).split("\n")

@@ -6,6 +6,7 @@ random points, exactly, as residues: integers modulo a prime. Functions such as 
 
 from collections.abc import Mapping, Sequence
 from dataclasses import dataclass, replace
+from decimal import Decimal
 from fractions import Fraction
 
 from symrot.build.code_digest import text_digest
@@ -255,10 +256,11 @@ def _require_intended(rates: Program) -> None:
         if own is not None and abs(own - node[1]) > DEFECT * abs(own):
             meant = intended_value(Fraction(float(node[1])), "binary64")
             number = f"{meant.fraction}*pi" if meant.times_pi else str(meant.fraction)
+            written = Decimal(node[1].numerator) / node[1].denominator
             raise InputError(
                 f"{rates.signature.name}: expected no constant that is a rounded value of another number, because "
-                f"errors are bounded, got {float(node[1])!r}, which has the same double as {number}; write {number} or "
-                "fewer digits"
+                f"errors are bounded, got {written}, which has the same double as {number}; write {number} or fewer "
+                "digits"
             )
 
 

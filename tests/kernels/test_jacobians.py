@@ -107,7 +107,7 @@ def test_derivatives_are_finite_at_zero(name):
 def test_a_certificate_proves_the_derivatives(name, tmp_path):
     """The C text is proven equal to the derivatives, and the audit accepts the certificate."""
     data, _ = certify(name, directory=tmp_path)
-    assert any(law["law"].startswith("the derivatives by") for law in data["laws"])
+    assert any(law["law"].startswith("the derivatives with respect to") for law in data["laws"])
     for folder, suffix in (("numpy", ".py"), ("js", ".js")):
         (tmp_path.parent / folder).mkdir(exist_ok=True)
         text = kernel_text(name).source(folder)

@@ -467,7 +467,7 @@ def test_a_value_at_a_single_point_is_no_way_around_the_proof(scene, step, edits
     for old, new in edits.items():
         assert old in double
         double = double.replace(old, new.replace("3", "3.0").replace("7", "7.0"))
-    with pytest.raises(CertificateError, match="expected no choice"):
+    with pytest.raises(CertificateError, match="expected no conditional expression"):
         formula_section(text.name, text._rates_program, text.method, f"{double}{head}{single}")
 
 
