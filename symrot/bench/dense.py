@@ -102,8 +102,8 @@ def main(arguments: list[str] | None = None) -> None:
             good = [one.median for one in ours if peer and one.error <= peer.error]
             if peer and good:
                 ratios.append(peer.median / min(good))
-                print(f"  {peer.name} at {tolerance:.0e} takes {ratios[-1]:.1f} times as long as symrot's series "
-                      f"with an error of at most {peer.error:.0e}")  # fmt: skip
+                print(f"  {peer.name} at {tolerance:.0e} takes {ratios[-1]:.1f} times as long as the fastest "
+                      f"series of symrot whose error is no larger, at most {peer.error:.0e}")  # fmt: skip
     if ratios:
         print(f"\nheyoka over symrot: median {np.median(ratios):.1f}, least {min(ratios):.1f}")
 

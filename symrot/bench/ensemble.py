@@ -166,7 +166,7 @@ def _print_table(runs: list[Measured], n: int) -> None:
         longest = min(own, key=lambda run: run.tolerance)
         pace = longest.least / longest.steps * 1e9
         print(f"  {contestant:24}{pace:6.0f} ns per trajectory and step, least error {min(r.error for r in own):.1e}")
-    print(f"{'  error <=':10}{'lanes us':>10}{'heyoka us':>11}{'ratio':>8}   per trajectory; its fastest mode")
+    print(f"{'  error <=':10}{'lanes us':>10}{'heyoka us':>11}{'ratio':>8}   per trajectory; fastest mode of heyoka")
     ratios = []
     for decade in DECADES:
         ours, other = best_of(runs, decade, ["lanes"]), best_of(runs, decade, peers)

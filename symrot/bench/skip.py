@@ -96,7 +96,7 @@ def measure(name: str | None = None, quick: bool = False, say: Progress = lambda
         rows.append(row)
         entries += [(row, key, Measured(key, 0.0, 0, 0.0, seconds_of(run)), run) for key, run in runs.items()]
     race([(measured, run) for _, _, measured, run in entries], 5 if quick else 15,
-         lambda number: say(f"{len(entries)} runs in turns: round {number + 1}"))  # fmt: skip
+         lambda number: say(f"{len(entries)} runs in turn: round {number + 1}"))  # fmt: skip
     for row, key, measured, _ in entries:
         side, what = key.split()
         row[side][what] = measured.median / (STATES * TURNS if what == "evaluation" else 1)

@@ -132,7 +132,7 @@ def compute_reference(name: str, scale: float = 1.0) -> list[Any]:
 def references_text() -> str:
     """Return the TOML text of the file :data:`REFERENCES`, with all references computed again."""
     lines = [
-        "# Last states of the motions of symrot.bench.taylor, in 40 digits and rounded to 25.",
+        "# Final states of the motions of symrot.bench.taylor, in 40 digits and rounded to 25.",
         "# Printed by `python -m symrot.bench.taylor --reference`.",
     ]
     for name in MOTIONS:

@@ -73,7 +73,7 @@ def _chain(left: Expr, right: Expr, hypotheses: list[Expr]) -> tuple[Link, ...]:
     forward, backward = list(_way(ring, left)), list(_way(ring, right))
     links = [Link(left, ""), *forward]
     if forward[-1].expression != backward[-1].expression:
-        links.append(Link(backward[-1].expression, "crosswise products of numerators and denominators agree"))
+        links.append(Link(backward[-1].expression, "both sides agree after cross-multiplication of the fractions"))
     return _cleaned([*links, *_reversed(right, backward)])
 
 

@@ -79,8 +79,8 @@ def require_boundary(surface: Surface, where: str) -> str:
         pairs = "no two triangles cross"
         pairs += f"; triangles touch at {len(contacts)} points, {tested} of them tested" if len(contacts) else ""
     return (
-        f"the surface is closed ({parts}); {lines} of {len(chosen)} straight lines cross it alternately inwards and "
-        f"outwards, as is right, and the others meet an edge and test nothing; {pairs}"
+        f"the surface is closed ({parts}); {lines} of {len(chosen)} test lines cross it alternately inwards and "
+        f"outwards, as they must, and the others meet an edge, which tests nothing; {pairs}"
     )
 
 

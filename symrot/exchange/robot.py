@@ -304,7 +304,7 @@ def _read_urdf(element: Element, root: Element) -> Inertial:
 
 
 def _read_sdf(element: Element, root: Element) -> Inertial:
-    inertial = _inertial(element, "; SDF then assumes 1 kg and 1 kg m^2, which is no measurement")
+    inertial = _inertial(element, "; SDF then assumes 1 kg and 1 kg m^2, which are not measured values")
     _require_known(inertial, ("auto",), ("pose", "mass", "inertia", "density", "fluid_added_mass"))
     if _flag(inertial.get("auto", "false"), "inertial.auto"):
         raise InputError("inertial: expected a mass and a tensor, got auto, which leaves both to the simulator")

@@ -90,7 +90,7 @@ def _require_same(form: Format, result: bytes, name: str, inertial: Inertial, wh
     ]
     if any(abs(x - y) > scale * ROUNDING for x, y, scale in pairs):
         raise InputError(
-            f"{where}: link {show(name)}: the new <inertial> would be read with other values than those computed, "
+            f"{where}: link {show(name)}: the new <inertial> would be read with values other than those computed, "
             "because other parts of the file change it; no file was written"
         )
 

@@ -120,8 +120,8 @@ def doubtful_holes(parts: Sequence[DensePart | None], names: Sequence[str]) -> t
         if _is_covered(hole, near, radius):
             continue
         doubts.append(
-            f"{name}: whether this hole lies within parts of at least its density could not be decided; where it does "
-            "not, the body has a negative density"
+            f"{name}: whether this hole lies within parts at least as dense as the material it removes could not be "
+            "decided; where it does not, the body has a negative density"
         )
     return tuple(doubts)
 
@@ -258,7 +258,7 @@ def _refuse_negative(hole: DensePart, near: Sequence[DensePart], radius: float, 
             elif holes and filled >= own * (1 - DENSITY):
                 fault = f"one that overlaps another hole, at ({place}) m in the axes of the body"
             else:
-                fault = f"a density of {own:.6g} {unit} where they have {filled:.6g} {unit}, at ({place}) m"
+                fault = f"a density of {own:.6g} {unit} where the other parts have {filled:.6g} {unit}, at ({place}) m"
             raise InputError(f"{name}: expected a hole within the other parts, got {fault}")
 
 
@@ -285,12 +285,12 @@ def require_points(added: Sequence[PointMass], subtracted: Sequence[tuple[str, P
     ``subtracted`` are pairs of the place in the scene, for messages, and the point mass.
     """
     size = max((math.hypot(*map(float, point)) for _, (_, point) in subtracted), default=0.0)
-    for name, (mass, point) in subtracted:
+    for name, (_, point) in subtracted:
         there = sum(float(own) for own, other in added if math.dist(point, other) <= ROUNDING * size)
         gone = sum(float(own) for _, (own, other) in subtracted if math.dist(point, other) <= ROUNDING * size)
         if gone > there * (1 + DENSITY):
             place = ", ".join(f"{float(x):.6g}" for x in point)
             raise InputError(
-                f"{name}: expected point masses to subtract that other point masses have at the same points, got "
-                f"{float(mass):.6g} kg at ({place}) m in the axes of the body, where they have {there:.6g} kg"
+                f"{name}: expected no more mass to subtract at a point than the other point masses have there, got "
+                f"{gone:.6g} kg to subtract from {there:.6g} kg at ({place}) m in the axes of the body"
             )

@@ -273,7 +273,7 @@ def exact_moments(
     region = domain(shape, numbers)
     measure = integrate(region.jacobian, region.limits).value(_PI)
     if not measure:
-        raise InputError(f"{prefix(where)}expected a {shape.name} that fills space, got corners in one plane")
+        raise InputError(f"{prefix(where)}expected a {shape.name} with a positive volume, got corners in one plane")
     if measure < 0:  # corners in the other order
         region = region._replace(jacobian=-region.jacobian)
     values = dict(zip("xyz", region.position, strict=True))

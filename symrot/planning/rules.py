@@ -333,7 +333,7 @@ RULES: tuple[tuple[str, Callable[[Scene, Structure], RuleOutcome]], ...] = (
 
 
 def _whole_motion(scene: Scene, structure: Structure) -> RuleOutcome:
-    why = "a torque without a formula may depend on it, and on all components of omega"
+    why = "a torque without a formula may depend on the attitude and on all components of omega"
     return RuleOutcome(structure, False, why)
 
 

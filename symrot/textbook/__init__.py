@@ -21,7 +21,7 @@ DOCUMENTS = ("chen", "sahakian", "brown", "beer-johnston")
 LINE_KINDS = {
     "operators": "the signs of a formula whose letters the extraction put on other lines",
     "letters": "a formula whose letters the double encoding garbled",
-    "repeats": "a formula that stands elsewhere too",
+    "repeats": "a formula that the document prints in another place too",
     "input": "what is given in a worked example",
     "definition": "a symbol, a component or a form of an equation is introduced",
     "law": "a law of mechanics that the document takes as given",

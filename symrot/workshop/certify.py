@@ -60,7 +60,9 @@ def _proven_statement(data: Data, own: SceneSource | None = None) -> Data | None
         jacobian = re.search(r" --jacobian ([\w,]+) ", str(data["regenerate"]))
         text = kernel_text(load_scene(own), jacobian[1].split(",") if jacobian else ())
         if text.name != data["kernel"]:
-            raise CertificateError(f"{data['kernel']}: expected the certificate of {text.name}, of the scene")
+            raise CertificateError(
+                f"{data['kernel']}: expected the certificate of {text.name}, which is the kernel of the scene"
+            )
         return proven_statement(text.under_test(data.get("rounding")))
     name = data["kernel"]
     scene = str(data["regenerate"]).removeprefix("symrot emit ").removesuffix(" --target c")
@@ -149,7 +151,7 @@ def _audit_step(
     if object_file is not None:
         source = path.with_name(f"{data['kernel']}.c")
         report += object_code.object_lines(source.read_text(encoding="utf-8"), object_file, source.name)
-    return [*report, "no theorem of Coq is about a step"] if coq else report
+    return [*report, "Coq theorems are about kernels only, not about steps"] if coq else report
 
 
 def audit_files(
@@ -209,7 +211,7 @@ def _coq(data: Data, progress: Callable[[str], object]) -> list[str]:
     from symrot.certificates.coq.check import check_kernel, coqc
 
     if data["coq"] is None:
-        return ["no theorem of Coq is about this kernel"]
+        return ["there is no Coq theorem about this kernel"]
     if coqc() is None:
         return ["Coq is not installed (Debian package coq): the theorem was not checked"]
     progress("checking with Coq ..")
@@ -387,7 +389,8 @@ def lines(data: Data, compared: bool = True) -> list[str]:
     for part in (data.get("rounding") or {"precisions": []})["precisions"]:
         worst = max(part["outputs"], key=lambda item: float.fromhex(item["absolute"]))
         most = f"{float.fromhex(worst['absolute']):.3g}"
-        rows.append(("rounding", f"{part['precision']}: error at most {most} on the box ({worst['output']})"))
+        bound = f"{part['precision']}: error at most {most} for inputs in the certified ranges ({worst['output']})"
+        rows.append(("rounding", bound))
     if compared:
         rows += [("object code", line) for line in object_code.lines(data.get("objects"))]
     elif data.get("objects"):

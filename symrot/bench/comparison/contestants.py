@@ -161,10 +161,13 @@ def _nothing(problem: Problem) -> str:
 
 CONTESTANTS: tuple[Contestant, ...] = (
     Contestant(
-        "exact", "exact", "closed form, without the time of its constants", (0.0,), _no_form,
+        "exact", "exact", "closed form, without the time to compute its constants", (0.0,), _no_form,
         lambda problem, tolerance: _symrot("exact")(problem, 1e-12),
     ),
-    Contestant("exact with set-up", "exact", "closed form, with the time of its constants", (0.0,), _no_form, _exact),
+    Contestant(
+        "exact with set-up", "exact", "closed form, including the time to compute its constants", (0.0,), _no_form,
+        _exact,
+    ),
     Contestant("taylor", "taylor", "Taylor series in C", OURS, _no_series, _symrot("taylor")),
     Contestant("dop853", "dop853", "Dormand-Prince 8(5,3) in C", OURS[:-4], _no_compiler, _symrot("dop853")),
     Contestant(

@@ -62,7 +62,7 @@ def main() -> None:
     options = parser.parse_args()
     import trimesh
 
-    rows = [("format", "triangles", "seconds", "bound of the error", "error (a hundredth of the triangles)")]
+    rows = [("format", "triangles", "seconds", "bound of the error", "error with 1/100 of the triangles")]
     with TemporaryDirectory(prefix="symrot-") as folder:
         for form in FORMATS:
             whole, part = Path(folder, f"whole.{form}"), Path(folder, f"part.{form}")

@@ -123,8 +123,8 @@ def reference(problem: Problem, say: Progress = lambda text: None, seconds: floa
     if others and not result.doubt <= CONTRADICTION:
         apart = "; ".join(f"{other} by {difference:.1e}" for other, difference in others)
         raise SymrotError(
-            f"{problem.scene.name}: expected references that agree within {CONTRADICTION:g}, but these differ from "
-            f"{name}: {apart}; one of the references is wrong, or the motion is too unstable over this span"
+            f"{problem.scene.name}: expected references that agree within {CONTRADICTION:g}, but the following "
+            f"differ from {name}: {apart}; one of the references is wrong, or the motion is too unstable over this span"
         )
     return result
 

@@ -178,11 +178,12 @@ def main(arguments: list[str] | None = None) -> None:
                 for tool, total in totals.items()
             ]
             print(f"{step.name}: {', '.join(cells)}", flush=True)
-            over += [f"{step.name} {tool}" for tool in totals if totals[tool] < totals["symrot"]]
-            over += [f"{step.name} time {times['symrot'] / times[tool]:.2f} of {tool}" for tool in times
+            over += [f"{step.name}: {tool} needs fewer operations" for tool, count in totals.items()
+                     if count < totals["symrot"]]  # fmt: skip
+            over += [f"{step.name}: {times['symrot'] / times[tool]:.2f} times the time of {tool}" for tool in times
                      if times["symrot"] > 1.05 * times[tool]]  # fmt: skip
     print(f"not installed, left out: {', '.join(sorted(absent))}" if absent else "every tool took part")
-    print(f"fewer operations, or less than 1/1.05 of the time, than symrot: {'; '.join(over) or 'none'}")
+    print(f"steps in which symrot needs more operations, or over 1.05 times the time: {'; '.join(over) or 'none'}")
 
 
 def _times(step: StepText, texts: dict[str, str], rounds: int) -> dict[str, float]:

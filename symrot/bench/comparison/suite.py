@@ -220,7 +220,7 @@ def page(results: Mapping[str, Any]) -> str:
     versions = ", ".join(f"{name} {machine[name]}" for name in ("python", "numpy", "scipy", "heyoka") if machine[name])
     text = ["# Time against error", "", "", ""]
     quick, took = " --quick" if one["quick"] else "", sum(each["took"] for each in results["studies"].values())
-    text[2] = f"Printed by `symrot bench --suite{quick}` in {took / 60.0:.0f} minutes; seconds are of one machine."
+    text[2] = f"Printed by `symrot bench --suite{quick}` in {took / 60.0:.0f} minutes, on one machine."
     loads = [each["machine"]["load"][0] for each in results["studies"].values() if each["machine"]["load"]]
     busy = f"; {machine['cores']} cores under a load of {min(loads):.1f} to {max(loads):.1f}" if loads else ""
     text += [LEGEND, "", f"{one_line(machine['processor'])}{busy}; {versions}.", ""]

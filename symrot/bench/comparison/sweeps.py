@@ -2,7 +2,7 @@
 
     python -m symrot.bench.comparison.sweeps [--count 1e6] [--seconds 10] [--rounds 3]
 
-Every motion is a damped heavy top with its own rate and weight; a sweep writes three outputs at 11 times to a Zarr
+Every motion is a damped heavy top with its own rate and weight; a sweep writes three quantities at 11 times to a Zarr
 file. The longer the motions, the less the rest of a sweep counts: outputs, files, starts of processes. All contestants
 use the same number of cores, one after the other in each round; the median of the ratios counts. On a busy machine,
 the processor time of client, scheduler and workers tells how many times as fast two workers can be as one.
@@ -138,7 +138,7 @@ def main() -> None:
                      f"{two.workers:.1f} s", f"{two.client:.1f} s", f"{two.attainable:.2f}"))  # fmt: skip
     sweeps, workers, attainable = (median(each) for each in zip(*ratios, strict=True))
     rows.append(("median", "", "", f"{sweeps:.2f}", "", "", "", f"{workers:.2f}", "", "", f"{attainable:.2f}"))
-    print(f"{count} damped tops over {options.seconds:g} s, three outputs at 11 times, {number} cores")
+    print(f"{count} damped tops over {options.seconds:g} s, three quantities at 11 times each, {number} cores")
     print("\n".join(columns(rows)))
 
 

@@ -85,7 +85,7 @@ def _condition(d: Derivation, sequence: str) -> Step:
 def _cofactors(d: Derivation, sequence: str) -> Step:
     jacobian = rate_jacobian(sequence)
     return d.step(
-        "The product of the determinant of $B$ and its inverse has no denominator, so it is finite at every angle.",
+        "The inverse of $B$ times the determinant of $B$ has no denominator, so this product is finite at every angle.",
         jacobian.determinant * jacobian.inverse,
         jacobian.adjugate(method="berkowitz"),
         because=r"$B^{-1} \det B$ is the matrix of cofactors of $B$",

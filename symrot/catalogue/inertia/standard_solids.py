@@ -95,8 +95,8 @@ def _tabulate(d: Derivation, bodies: Sequence[Solid]) -> None:
         results,
     )
     d.tabulate(
-        "The same steps prove the centres of mass and the products of inertia. All other bodies have their centre of "
-        "mass at the origin, and their axes are principal axes.",
+        "The same steps prove the formulas for the centres of mass and the products of inertia. The bodies that are "
+        "not in this table have their centre of mass at the origin, and their axes are principal axes.",
         ("Body", "$c$", "$I_{xy}$", "$I_{xz}$", "$I_{yz}$"),
         [
             ((_title(body), _center_cell(body), *_product_cells(body.inertia)), ())

@@ -156,7 +156,7 @@ def near(d: Derivation) -> None:
         "the sign of $q_1$ and $q_2$.",
         rate(pair, back),
         Rational(1, 2) * Matrix([I * X * pair[0] - KAPPA * pair[1], KAPPA * pair[0] - I * X * pair[1]]),
-        because="time and sweep both change sign",
+        because=r"$x$, $\frac{d}{dx}$ and $\beta$ change sign",
         relations=[imaginary()],
         named=r"\frac{d}{dx} \begin{bmatrix} \alpha(-x) \\ -\beta(-x) \end{bmatrix}",
     )

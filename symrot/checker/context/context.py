@@ -94,7 +94,10 @@ class Context:
 
     @property
     def place(self) -> str:
-        """The place of the axis in the words about the body, such as "about an end"; otherwise an empty text."""
+        """Where the axis is, as the context's words about the body state: "about an end" for "rod about one end".
+
+        Empty if these words state no place.
+        """
         return self.body.place if self.body else ""
 
     @property

@@ -145,7 +145,7 @@ def radical(node: Expr, radicand: Callable[[Expr, int], Radicand]) -> Radical:
     if above == -1 and below == 1 and index == 2:
         roots.append(_imaginary_unit())
     elif above.is_Rational and index != 2 and above * sign_of(below) < 0:
-        raise InputError(f"a root of a negative number is no real number: {node}")
+        raise InputError(f"a root of a negative number is not a real number: {node}")
     elif above != 1 or below != 1:
         terms, times = len(Add.make_args(below)), index - 1
         if len(Add.make_args(above)) * comb(terms + times - 1, times) > MOST_TERMS:
@@ -216,7 +216,10 @@ def _factors_of_number(whole: int) -> dict[int, int]:
     powers = dict(factorint(whole, limit=LARGEST_DIVISOR, use_rho=False, use_pm1=False, use_ecm=False))
     if all(factor < LARGEST_DIVISOR**2 or isprime(factor) for factor in powers):
         return powers
-    raise TooLarge(f"expected numbers under roots of at most {MOST_BITS_FACTORED} bits, to be factored")
+    raise TooLarge(
+        f"expected numbers of at most {MOST_BITS_FACTORED} bits under roots, since they must be factored; got one of "
+        f"{whole.bit_length()} bits"
+    )
 
 
 def _nesting(expressions: Iterable[Expr]) -> int:

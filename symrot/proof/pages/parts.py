@@ -97,8 +97,11 @@ def footer(page: Page) -> str:
     count = len(page.steps)
     proven = f"{count} steps, each proven" if count != 1 else "One step, proven"
     sides = [side for step in page.steps for side in step.printed]
-    rest = "" if all(sides) else "; the others are names, or words, for what was proven"
-    sentence = f"Printed from the proof, or read back and decided: {sum(sides)} of {len(sides)} sides{rest}."
+    rest = "" if all(sides) else "; the others are names or words for the expressions that were proven"
+    sentence = (
+        "Sides of equations that are printed from the proof, or were parsed and proven equal to the expression in the "
+        f"proof: {sum(sides)} of {len(sides)}{rest}."
+    )
     return (
         f"{proven} when this page was printed: the normal form of left minus right is zero. {sentence} "
         f"Derived in `{page.file or page.name}`, printed by `symrot derive "

@@ -68,7 +68,8 @@ def audit_elliptic(path: Path, data: Data, scene: SceneSource | None = None) -> 
         raise CertificateError(f"{path}: expected the layout of a certificate as symrot prints it, got another")
     return [
         f"{step.name}: {len(texts)} files are those that symrot prints for the scene in the certificate",
-        f"the C text solves the equations of motion at {STATES} states to {DIGITS} digits; nothing is proven elsewhere",
+        f"the C text solves the equations of motion at {STATES} states to {DIGITS} digits; nothing is proven for other "
+        "states",
         _of_scene(path, step.scene.name, data, scene),
         "bounds of rounding and truncation are those that symrot computes"
         if "bounds" in data
@@ -109,7 +110,10 @@ def _bounds(path: Path, step: ExactStepText, data: Data) -> Data:
         for name, value in own[kind].items():
             # the last digits depend on the functions of the machine
             if not float.fromhex(value) / NEAR <= numbers[name] <= float.fromhex(value) * NEAR:
-                raise CertificateError(f"{path}: expected the bounds that symrot computes on the box, got others")
+                raise CertificateError(
+                    f"{path}: expected the bounds that symrot computes for the ranges in the certificate, got another "
+                    f"{kind} bound of {name}; print the certificate again"
+                )
     return own | {kind: {name: x.hex() for name, x in numbers.items()} for kind, numbers in stated.items()}
 
 

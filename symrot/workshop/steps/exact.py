@@ -197,7 +197,7 @@ class ExactStepText(StepFiles):
         if self.form.library != "free_body":
             raise InputError(
                 f"--box: expected no ranges for the step exact of {self.scene.name}, because symrot bounds no errors "
-                "of the exact step of a heavy top; the step taylor of order 16 is close to it"
+                "of the exact step of a heavy top; take --step taylor --order 16, whose result is close"
             )
         if set(box) != set(BOXED):
             ranges = " ".join(f"--box {name}=LOW:HIGH" for name in BOXED)

@@ -36,12 +36,6 @@ SAFE_BY_UNIT = ("exponent", "factor", "wrong_symbol", "extra_term", "missing_ter
 SURE_IF_STATED = ("sin_cos_swap", "half_angle", "double_half_angle", "exponent")
 """Codes of the faults that are evident if the context states what the letters of the formula mean."""
 
-OF_ANGLES = re.compile(r"angle rates of|angular velocity of [xyzXYZ]{3}\b")
-"""Pattern of the names of known formulas in Euler angles.
-
-A claim near one of these is never taken for a special case with two equal quantities, since books print none.
-"""
-
 
 def says_too_little(claim: Claim, named: NamedFormula, near: Near) -> bool:
     """Return whether a claim ``I = ..`` names no body, so that it may be right for a body that symrot does not know."""
@@ -66,12 +60,11 @@ def is_evident(claim: Claim, named: NamedFormula, near: Near) -> bool:
     count = len(letters | names_in(named.side)) if named.side.kind == "product" else quantities  # an equation
     count += is_steady(near.known.name) and TIME in [node for _, node in walk(named.formula)]  # t is a letter of it
     is_new = not quantities_in(near.tree) <= quantities_in(named.formula)
-    is_special = near.is_symmetric and not OF_ANGLES.search(near.known.name)
     is_component = _is_component_of_parameters(named, near) or _is_angle_of_entries(named, near)
     if is_new and near.code == "wrong_symbol" and is_component:
         return True
     if is_new and (
-        max(quantities, near.array_letters) < LEAST_SYMBOLS_EDITED or near.code == "missing_term" or is_special
+        max(quantities, near.array_letters) < LEAST_SYMBOLS_EDITED or near.code == "missing_term" or near.is_symmetric
     ):
         return False  # a special case: the missing letter is zero, or equal to another one
     if near.code in ("overall_sign", "sign_of_term") and re.fullmatch("lambda|sigma|s", named.name):
