@@ -14,7 +14,7 @@ from symrot.proof.notation.printer import formula
 THETA = symbols.theta
 SCALE = Symbol("lambda", real=True)
 EXAMPLE = "ZYX"
-"""The sequence whose proof the page prints step by step; tables have the results for the other sequences."""
+"""The Euler sequence whose proof is printed step by step; tables have the results for the other sequences."""
 
 
 def derive() -> Derivation:
