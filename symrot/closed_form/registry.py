@@ -188,9 +188,10 @@ def _axial(scene: Scene) -> Starts:
 
 
 def _field_axis(name: str) -> Callable[[Scene], int | None]:
-    """Return a function from a scene to the body axis (0, 1 or 2) along the vector ``name`` of the scene's torque.
+    """Return a function from a scene to the index (0, 1 or 2) of the body axis along a vector of its first torque.
 
-    That function returns None if the vector is along none of the three axes.
+    ``name`` is the vector's name in the scene, such as ``center_of_mass``. The function returns None if the vector is
+    zero or along none of the three axes.
     """
     return lambda scene: _only_axis(scene.torques[0].vector(name))
 

@@ -36,13 +36,16 @@ functions.
 """
 
 MOST_MATRICES, MOST_COLUMNS = 40, 5
-"""Largest number of matrices whose multiples are tried as a missing term, and of named vectors in scalar products."""
+"""Largest number of matrices whose multiples are tried as a missing term, and largest number of vectors.
+
+The scalar products of two of these vectors are tried as factors.
+"""
 
 LARGEST_RATIO = 60
 """Largest denominator of a rational number in a repair, such as 2/3 in a factor that was forgotten."""
 
 LARGEST_OF_SIDE = 1000
-"""The same limit for the factor of a whole side, or of a term or factor that is not nested deeper in a side."""
+"""Largest denominator of a rational number that multiplies a whole side of the claim, or a term or factor of a side."""
 
 Values = tuple[float, ...]
 """The values of a formula, one for each test point."""

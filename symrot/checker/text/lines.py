@@ -23,7 +23,10 @@ WORST_FIRST = ("false", "doubtful", "undecided", "conditional", "definition", "r
 APART = "each line is a formula that symrot derives, but no body, frame or sequence has all of them for its components"
 
 MOST_LINES, MOST_EDITS_OF_LINE = 4, 120
-"""The largest number of lines, and of edits of each, in the search for an edit that makes the lines fit together."""
+"""Largest numbers of lines of a claim, and of edits of each line, in the search for an edit of one wrong line.
+
+The edit must make all lines formulas of the same body, frame or sequence.
+"""
 
 NAMING = ("definition", "recognised")
 
@@ -133,11 +136,11 @@ def with_all_conditions(verdict: Verdict, conditions: Sequence[Sequence[str]], b
 
 
 def _as_named_chain(line: Sequence[Claim], verdicts: Sequence[Verdict], notation: Notation) -> list[Verdict]:
-    """Return ``verdicts``, those on the equations of a chain ``name = a = b``, with other verdicts on ``a = b``.
+    """Return the verdicts on the equations of a chain ``name = a = b``, where that on ``a = b`` may be replaced.
 
-    If ``a = b`` is no identity and each side has letters that the other side lacks, its verdict is replaced by the one
-    on ``name = b``. If b is a number and ``a = b`` is false in general but may hold for some values of its letters, as
-    sin x = 1/2 does, the verdict becomes "definition". In a chain that does not begin with a name, nothing is replaced.
+    If ``a = b`` is no identity, and a and b each have a letter that the other one lacks, the verdict on ``name = b``
+    replaces the verdict on ``a = b``. If b is a number and ``a = b`` is false in general, but a depends on letters as
+    in sin x = 1/2, its verdict becomes "definition". Chains that begin with no name keep their ``verdicts``.
     """
     named = named_formula(line[0]) if len(line) > 1 else None
     if named is None or line[0].relation is None or line[0].relation[1] != named.side:

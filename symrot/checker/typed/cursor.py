@@ -24,7 +24,7 @@ __all__ = [
 DEEPEST_NESTING = 60
 ADDING = ("+", "-")
 MASS = "dm"
-"""The element of mass of a body."""
+"""Name of the element of mass in an integral over a body."""
 
 FACTOR_MARKS = ("(", "[", "√")
 """Characters that may start a factor directly after another factor, without a product sign: ``2(a + b)``, ``2√x``."""

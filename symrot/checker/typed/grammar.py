@@ -1,7 +1,8 @@
 """The grammar of claims: a parser by precedence, with tables for operators, functions and methods.
 
 SymPy syntax has one meaning. A formula as people type it, such as ``sin 2x`` or ``a/b c``, may be ambiguous. The parser
-chooses the usual meaning, unless ``flips`` asks for the other one, and records the ambiguity as a :class:`Doubt`.
+records each ambiguity as a :class:`Doubt` and chooses the usual meaning, or the other one if the key of the doubt is in
+its argument ``flips``.
 """
 
 import re

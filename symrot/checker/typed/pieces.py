@@ -42,7 +42,7 @@ CONSTRUCTORS = {"hstack": "hstack", "eye": "eye", "diag": "diag"}
 
 
 ELEMENTS = (MASS, "dV", "dA", "ds", "dt")
-"""The elements of integrals over a body, by its mass, volume, area or length, and of an integral over time."""
+"""Names of the usual differentials in integrals: of mass, volume, area and length of a body, and of time."""
 
 MOST_DOTS = 4
 """The highest order of a derivative that is written with primes or dots."""

@@ -29,7 +29,7 @@ LARGEST = 1e205
 """Largest number that may define a motion, in its unit, so that all constants of the motion are finite doubles."""
 
 SMALLEST = 1e-205
-"""Smallest moment of inertia, kg m^2."""
+"""Smallest moment of inertia that may define a motion, kg m^2."""
 
 GRID = 2.0**-33
 """The rounding of attitudes: each component is a sum hi + lo of two doubles, with hi the nearest double to it.

@@ -36,7 +36,10 @@ class Enclosure(NamedTuple):
 
 
 def value_operands(series: Series) -> tuple[int, ...]:
-    """Return the operands (indices of series) that determine the value of a series: u alone for sin(u)."""
+    """Return the operands (indices of series) from which the value of a series is computed: u for sin(u).
+
+    Left out are operands that only the higher Taylor coefficients of the series need, such as cos(u).
+    """
     # the first operands of a driven series determine only its later Taylor coefficients
     first = {"driven": 2, "primitive": 3}.get(series.rule, 0)
     return () if series.rule == "clock" else series.operands[first:]
@@ -93,7 +96,7 @@ def _degree(series: Series, degrees: list[int]) -> int:
 
 
 def functions_of_time(enclosure: Enclosure) -> dict[int, bool]:
-    """Return the evaluated series that depend on t and on no state, each with whether it is linear in t."""
+    """Return {index of a series: whether it is linear in t} for the series of ``enclosure`` that depend on t alone."""
     linear: dict[int, bool] = {}
     for i in enclosure.series:
         series = enclosure.system.series[i]
