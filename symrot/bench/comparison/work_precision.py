@@ -126,7 +126,7 @@ def _entries(
 ) -> tuple[list[Entry], list[dict[str, str]]]:
     """Return (entries, skipped): an entry with error and steps for each method and tolerance, and the methods left out.
 
-    A dict in ``skipped`` has a method's name (``method``) and why all or some of its tolerances were left out (``why``).
+    A dict in ``skipped`` has a method's name (``method``) and the reason (``why``) for all or some of its tolerances.
     """
     entries: list[Entry] = []
     skipped = []
