@@ -108,7 +108,7 @@ def _narrow_features(plan: Plan) -> "PlanRow":
     try:
         terms = enclosure(recurrences(scene_kernel(plan).rates))
     except InputError as reason:  # without a Taylor series there are no bounds inside a step
-        return _row("narrow features", False, f"a step may miss them: {reason}")
+        return _row("narrow features", False, f"a step may miss a narrow feature: {reason}")
     if terms is None:
         why = "the formulas are polynomials of low degree, or sines and cosines of time: they have no narrow features"
         return _row("narrow features", True, why)
@@ -128,8 +128,8 @@ def _switches(functions: list[str]) -> "PlanRow":
         if any(bent is bends for _, bent in named)
     ]
     why = (
-        f"{'; '.join(parts)}: their times are located to the last bits by enclosures, and steps end exactly there; "
-        "where both sides of a jump lead back to it, the motion slides along it"
+        f"{'; '.join(parts)}: bounds of the formulas (an enclosure) locate the times to the last bits, and steps end "
+        "exactly there; where the motion on both sides of a jump leads back to the jump, it slides along the jump"
     )
     return _row("switches", False, one_line(why))
 

@@ -137,7 +137,7 @@ class Sensitivities(Mapping[str, Sensitivity]):
     def __repr__(self) -> str:
         *motions, samples = self.omega.shape[:-2]
         of = f"{motions[0]} trajectories, " if motions else ""
-        return f"<Sensitivities by {', '.join(self.variables)}: {of}{samples} samples>"
+        return f"<Sensitivities with respect to {', '.join(self.variables)}: {of}{samples} samples>"
 
     def of(self, motion: int) -> "Sensitivities":
         """Return the derivatives of motion number ``motion``, from 0, of an ensemble."""
@@ -173,7 +173,7 @@ class Sensitivities(Mapping[str, Sensitivity]):
             for quantity, (components, own, frame, meaning) in OUTPUTS.items():
                 names = tuple(f"{component}{BY}{variable}" for component in components)
                 values = getattr(self, quantity)[..., number]
-                text = f"derivative of the {meaning}, by {variable}"
+                text = f"derivative of the {meaning} with respect to {variable}"
                 items.append(
                     Labelled(f"{quantity}{BY}{variable}", values, names, quotient_unit(own, unit), frame, text)
                 )
@@ -185,7 +185,7 @@ def event_time_items(variables: Sequence[str], units: Sequence[str], slopes: Flo
     items = []
     for number, (variable, unit) in enumerate(zip(variables, units, strict=True)):
         name = f"{TIME}{BY}{variable}"
-        text = f"derivative of the time of the event, by {variable}"
+        text = f"derivative of the time of the event with respect to {variable}"
         items.append(Labelled(name, slopes[:, number], (name,), quotient_unit("s", unit), "", text))
     return items
 

@@ -176,7 +176,7 @@ def in_order(scene: SceneContent, changes: Mapping[str, Any]) -> Content:
         path = _whole_path(scene, key)
         for other, before in paths.items():
             if path and path == before:
-                raise InputError(f"{key}: expected each value once, got {_text(Place(path))} by {other}, too")
+                raise InputError(f"{key}: expected each value once, but {other} sets {_text(Place(path))} too")
             if path and before and _exclude(path, before):
                 raise InputError(f"{key}: expected either {other} or {key}, since each replaces the other, got both")
         paths[key] = path

@@ -109,7 +109,7 @@ class Crossings:
             rows[mode] = np.full(len(by.T), np.nan) if grazes else 0.0 - guard.change(by) / speed
         if not jumps and float(np.abs(later - f).max()) > STEEP * float(np.abs([f, later]).max()):
             names_of = " and ".join(map(guards.name, [*changed, *sorted(held), *released]))
-            raise guards.refusal(before.end, f"the torque jumps where no argument is zero in {names_of}")
+            raise guards.refusal(before.end, f"the torque jumps although no argument of {names_of} is zero")
         first = next(iter(jumps), None)
         if first is not None:
             flips = {mode: Flip(after.modes[mode], rows[mode], jumps[mode].states) for mode in jumps}

@@ -109,4 +109,6 @@ def require_one_surface(guards: Guards, interval: Interval, mode: str, t: float,
         other = guards.guard(interval, twin, t, y)
         row = np.array([other.time, *other.states, *other.variables])
         if np.abs(own * (row @ own) - row * (own @ own)).max() > ALIKE * (own @ own) * np.abs(row).max():
-            raise guards.refusal(interval.zero.after(t), f"{guards.name(mode)} and {guards.name(twin)} switch at once")
+            raise guards.refusal(
+                interval.zero.after(t), f"{guards.name(mode)} and {guards.name(twin)} switch at the same time"
+            )

@@ -96,7 +96,9 @@ class Variable:
 def require_formulas(scene: Scene) -> None:
     """Raise InputError if a torque of a scene is given by samples, which have no derivatives."""
     if scene.table is not None:
-        raise InputError(f"{scene.name}: expected torques with formulas for sensitivities, got a torque of kind table")
+        raise InputError(
+            f"{scene.name}: expected torques with formulas, which sensitivities need, got a torque of kind table"
+        )
 
 
 def read_variables(scene: Scene, keys: Sequence[str]) -> list[Variable]:

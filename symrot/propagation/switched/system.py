@@ -170,7 +170,7 @@ class SwitchedSystem:
                     if names(switch.guard) & (held | tied.keys()):
                         raise InputError(
                             f"torque: the motion slides along the jump of a function inside {switch.label}, which has "
-                            "no value there; write the torque without functions with a jump inside other ones"
+                            "no value there; write the torque without a function with a jump inside another function"
                         )
                 own = on_own_clock(plan, self.choice, self.tolerance)
                 self._regime_of[content] = Regime(self.constants, self.switches, own, held, switches)
