@@ -128,8 +128,8 @@ def _switches(functions: list[str]) -> "PlanRow":
         if any(bent is bends for _, bent in named)
     ]
     why = (
-        f"{'; '.join(parts)}: bounds of the formulas (an enclosure) locate the times to the last bits, and steps end "
-        "exactly there; where the motion on both sides of a jump leads back to the jump, it slides along the jump"
+        f"{'; '.join(parts)}: these times are located to the last bits, by bounds of the formulas (an enclosure), and "
+        "steps end exactly there; where both sides of a jump lead back to the jump, the motion slides along it"
     )
     return _row("switches", False, one_line(why))
 

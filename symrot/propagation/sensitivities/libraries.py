@@ -178,6 +178,6 @@ class MotionLibrary:
             except PropagationError:
                 raise error from None
             if rests_at_corner(self._rates, self._depends, p, between, samples[len(times) :]):
-                reason = "the torque is not differentiable there, since a square root such as |omega| remains zero"
+                reason = "the torque is not differentiable there, since a square root such as |omega| stays at zero"
                 raise IntegrationStopped(begin, reason) from None
         return samples[: len(times)]
