@@ -65,9 +65,10 @@ def _symrot(problem: Problem, method: str, tolerance: float, times: Floats) -> C
 
 
 def measure(name: str, samples: int, rounds: int) -> list[Measured]:
-    """Time all contestants on the motion ``name``, and return their runs with times and errors.
+    """Compute ``samples`` samples of the motion ``name`` by symrot and by heyoka, and return times and errors.
 
-    Each run computes ``samples`` samples and is timed ``rounds`` times; its number of steps is not counted, and is 0.
+    The result has one entry for each method and tolerance, timed up to ``rounds`` times. The number of steps in an
+    entry is 0, since steps are not counted.
     """
     problem, exact = SteppedProblem(name, 1.0), reference(name)
     times = np.linspace(problem.start, problem.stop, samples)

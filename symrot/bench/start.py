@@ -37,7 +37,10 @@ def _symrot() -> list[str]:
 
 
 def main(arguments: list[str]) -> int:
-    """Print the table of starting times; arguments are the number of rounds and the scene."""
+    """Print how long ``symrot run`` takes from the shell, and how long its parts take, such as ``import numpy``.
+
+    ``arguments`` may hold the number of rounds and the name of a scene.
+    """
     rounds = int(arguments[0]) if arguments else ROUNDS
     scene = arguments[1] if len(arguments) > 1 else "tumbling_prism"
     with TemporaryDirectory(prefix="symrot-") as directory:

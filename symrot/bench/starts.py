@@ -145,10 +145,11 @@ def _in_c(motion: Any, initial: Any, rounds: int) -> float:
 
 
 def changed_starts(scenes: list[str], rounds: int) -> None:
-    """Print a table of the times of propagator calls with a new initial state, a row for each scene and method.
+    """Print a table of the times, microseconds, of a propagator's call with a new initial state.
 
-    In us: whole calls with a new angular velocity, a new attitude and both; then the time that Python takes in the
-    slower of the first two calls, and in the third.
+    It has a row for each scene and method. The first three columns are whole calls: with a new angular velocity, with a
+    new attitude, and with both. Column 4 is the time outside of C in one of the first two calls (the larger of the
+    two), and column 5 that in the third call.
     """
     heads = ("omega", "attitude", "both", "Python", "of both")
     print(f"{'us of a changed start':28}{'method':>8}" + "".join(f"{head:>9}" for head in heads))

@@ -74,7 +74,10 @@ def general_structure(scene: Scene, switched: bool = False) -> Structure:
 
 
 def _general_torque(number: int, torque: Torque, known: set[str], switched: bool) -> TorqueStructure:
-    """Return the structure of torque ``number``, all constants free; the constants' names are added to ``known``."""
+    """Return what the most general equations assume about torque ``number``: each constant may have any value.
+
+    The names of the constants are added to ``known``.
+    """
     if torque.formulas:
         general = _formula_torque(torque, switched)
         prefix = _prefix(number, list(general.parameters), known)

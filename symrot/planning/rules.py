@@ -51,7 +51,8 @@ class RuleOutcome(NamedTuple):
     structure : Structure
         The structure after the rule.
     skipped : bool
-        Whether the rule simplifies the equations: it removes a term or a state, or replaces a constant by a number.
+        Whether the rule applies, so that the equations skip something: a term, a state, or a constant that a number
+        replaces.
     why : str
         The reason for the decision.
     derivation : str

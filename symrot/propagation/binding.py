@@ -33,7 +33,10 @@ def two_doubles(top: int, bottom: int) -> tuple[float, ...]:
 
 
 class Binding:
-    """Function that takes a plan, with any initial state, and returns the values of a kernel's parameters as doubles.
+    """Function that takes a plan (the equations of a scene) and returns the values of a kernel's parameters.
+
+    The plan may have any initial state: only formulas that contain numbers of the initial state are evaluated again.
+    The values are doubles.
 
     Parameters
     ----------
@@ -74,7 +77,10 @@ class Binding:
         ]
 
     def __call__(self, plan: Plan) -> list[float]:
-        """Return the parameter values for ``plan``, a plan of the same scene with any initial state."""
+        """Return the parameters for ``plan``, which may differ from the plan passed first in its initial state only.
+
+        The doubles follow in the order of the parameters, as many for each as the function ``rounded`` returns.
+        """
         numbers = self._numbers.copy()
         if self._moving:
             constants = plan.start_constants

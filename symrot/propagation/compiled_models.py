@@ -78,7 +78,7 @@ def _structure_text(structure: Structure) -> str:
 
 
 def scene_kernel(plan: Plan, on_rates: Callable[[Program, str], object] = lambda rates, source: None) -> SceneKernel:
-    """Return the kernel of a plan, from the cache or newly derived.
+    """Return the kernel of a plan (generated code for the equations of a scene), from the cache or newly derived.
 
     ``on_rates(program, c_text)`` is called as soon as the rates are derived, before the conserved quantities are; it is
     not called for a kernel from the cache.
@@ -95,7 +95,9 @@ def scene_kernel(plan: Plan, on_rates: Callable[[Program, str], object] = lambda
 
 
 def compiled(plan: Plan) -> tuple[SceneKernel, Path]:
-    """Return the kernel of a plan, and the path of the compiled library of the kernel and its stepper, DOP853.
+    """Return the kernel of a plan (generated code for the equations of a scene), and the path of its compiled library.
+
+    The library contains the kernel and its stepper, DOP853.
 
     Raises
     ------
@@ -234,7 +236,12 @@ def formula_deviations(plan: Plan, kernel: SceneKernel) -> "Callable[[Mapping[st
 
 
 def enclosure_text(plan: Plan, rates: Callable[[], Program], edges: Sequence[int]) -> str:
-    """Return C code that bounds how far the rates of a plan can change in a step, from the cache or newly generated."""
+    """Return C code that bounds how far the rates (time derivatives of the states) can change in one step.
+
+    The rates are those of the equations in ``plan``. The code comes from the cache; only if it is not there, ``rates``
+    is called for the program of the rates, and the code is generated. ``edges`` are the edges of the blocks of states
+    whose errors are measured separately.
+    """
     key = f"enclosure {DENSE_ORDER}\n{kernel_key(plan)}"
     text = library.fetch(key)
     if text is None:

@@ -141,12 +141,18 @@ class _Function(TorqueSource):
         return self.pointer
 
     def check(self, low: float, high: float) -> None:
-        """Clear the error of an earlier motion. No time raises InputError: the domain of the function is not known."""
+        """Clear the error that the function raised in an earlier motion.
+
+        The times ``low`` and ``high`` are not checked, because the domain of the function is not known.
+        """
         # failure() reports only exceptions from here on
         self.error = None
 
     def failure(self) -> BaseException | None:
-        """Return the error of the function, also for a result that is not three finite numbers, or None."""
+        """Return the error of the function in the last motion, or None if there was none.
+
+        A result that is not three finite numbers is an error, too.
+        """
         return self.error
 
 
@@ -172,7 +178,7 @@ class _CFunction(TorqueSource):
         return self.pointer
 
     def check(self, low: float, high: float) -> None:
-        """Do nothing: no time raises InputError, because the domain of a C function is not known."""
+        """Do nothing: the domain of a C function is not known, so that no time can be refused."""
 
     def failure(self) -> BaseException | None:
         """Return None: a C function raises no exceptions, but reports an error by its return value."""

@@ -154,7 +154,7 @@ def clock(
 
 
 def _folded(node: Node, known: Mapping[str, Fraction]) -> Node:
-    """Return a formula with each subexpression without the epoch replaced by its value.
+    """Return a formula in which each subexpression that does not contain the symbol epoch is replaced by its value.
 
     For a = 3, ``a*2*epoch`` becomes ``6*epoch``.
     """

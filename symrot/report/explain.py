@@ -86,9 +86,10 @@ BENDS = frozenset({"abs", "min", "max", "clip"})
 
 
 def _formulas(plan: Plan, method: str) -> "list[PlanRow]":
-    """Return the rows of the table that say how steps notice short pulses, jumps and kinks in torque formulas.
+    """Return the rows of the table of `symrot explain` about short pulses, jumps and kinks in torque formulas.
 
-    ``method`` is the integration method. The list is empty if no torque is a formula.
+    They say how the steps of the integration notice these features; ``method`` is the integration method. The list is
+    empty if no torque is a formula.
     """
     from symrot.propagation.compiled_models import has_formulas
 
@@ -117,7 +118,7 @@ def _narrow_features(plan: Plan) -> "PlanRow":
 
 
 def _switches(functions: list[str]) -> "PlanRow":
-    """Return the row of the table about functions with jumps or kinks, such as sign(x), in torques.
+    """Return the row of the table of `symrot explain` about functions with jumps or kinks, such as sign(x), in torques.
 
     ``functions`` are their calls as text.
     """
@@ -151,8 +152,9 @@ def _samples(plan: Plan) -> "list[PlanRow]":
 def facts(plan: Plan) -> "PlanReport":
     """Return the table of `symrot explain` as data for JSON.
 
-    In each row, ``operations`` has the number of remaining operations of each kind; ``saved`` is the number of
-    operations that the row's rule saves.
+    A row that counts operations has the number of remaining operations of each kind as ``operations``. If the row is
+    about a rule that may shorten the equations, ``saved`` is the number of operations that the rule saves. Otherwise
+    both are None.
     """
     scene = plan.scene
     ladder = _ladder(plan)

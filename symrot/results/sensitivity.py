@@ -98,7 +98,8 @@ class Sensitivities(Mapping[str, Sensitivity]):
     switchings : tuple of SwitchSlopes
         The switches of the torques up to the last sample, with the derivatives of their times.
     times : array, shape (n, m), or None
-        For the samples at an event, ``at_events`` of a trajectory: the derivatives of the times of the samples.
+        The derivatives of the times of the samples, if these are the times of an event (``at_events`` of a trajectory);
+        None for samples at fixed times.
 
     Examples
     --------
@@ -146,9 +147,10 @@ class Sensitivities(Mapping[str, Sensitivity]):
 
     @property
     def record(self) -> dict[str, Any]:
-        """The names and units of the variables, the requested groups, and the derivatives of times, as data for JSON.
+        """Data for JSON: the variables, and the derivatives of the times of events and switches.
 
-        A file of samples contains this record; :func:`restored` reads it.
+        The variables have names and units, and ``groups`` says which variables belong to each requested name. A file of
+        samples contains this record; :func:`restored` reads it.
         """
         record: dict[str, Any] = {
             "variables": list(self.variables),
@@ -227,6 +229,9 @@ def restored(record: Mapping[str, Any], items: Mapping[str, Labelled]) -> Sensit
 
 
 def time_slopes(rows: Sequence[Sequence[float | None]], variables: int | None) -> Floats:
-    """Return the derivatives of times from a file, shape (k, m); None in the file is NaN in the result."""
+    """Return the derivatives of k times by m variables as an array, shape (k, m), from ``rows`` in a file.
+
+    None in the file is NaN in the result. ``variables`` is m; without it, k must be at least 1.
+    """
     table = np.array([[np.nan if value is None else value for value in row] for row in rows], dtype=np.float64)
     return table if variables is None else table.reshape(len(rows), variables)

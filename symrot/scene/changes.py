@@ -42,10 +42,11 @@ EXCLUSIVE: dict[tuple[str | int, str | int], str] = {
     ("torque", "weight"): "gravity",
     ("torque", "gravity"): "weight",
 }
-"""(Top-level table of a path, key) -> the key that may not stand beside this key, in the same table.
+"""(First key of a path, last key of the path) -> the key that may not stand in the same table as the last key.
 
-If a value with one of both keys is set, the value with the other key is removed.
-"""
+The path leads to a value in the scene file: for ``body.part[0].mass`` the pair is ``("body", "mass")``, and the key
+that it excludes is ``"density"``. A change that sets a value with one of the two keys removes a value with the other
+key."""
 
 RATES = ("omega_1", "omega_2", "omega_3")
 MOST_STEPS = 1_000_000  # more than any path has
@@ -157,14 +158,14 @@ def number_path(scene: SceneContent, key: str) -> Path:
 def set_last(key: str) -> bool:
     """Return whether a change by ``key`` must come after the other changes, because it uses numbers that they may set.
 
-    ``I_xx`` and ``center_of_mass`` replace the shapes of the body by moments of inertia; ``omega_2`` keeps the other
-    two components of omega in the body, which depend on the attitude if the scene gives omega in space.
+    ``I_xx`` and ``center_of_mass`` replace the shapes of the body by moments of inertia. A change of ``omega_2`` leaves
+    the other two body components of omega unchanged; if the scene gives omega in space, these follow from the attitude.
     """
     return key in (*TENSOR, *RATES, "principal") or str(key).rpartition(".")[2].startswith("center_of_mass")
 
 
 def in_order(scene: SceneContent, changes: Mapping[str, Any]) -> Content:
-    """Return ``changes`` in the order in which none replaces the value of another: ``omega`` before ``omega_2``.
+    """Return ``changes`` in an order in which none overwrites an earlier one: ``omega`` before ``omega_2``.
 
     Raises
     ------
@@ -187,7 +188,10 @@ def in_order(scene: SceneContent, changes: Mapping[str, Any]) -> Content:
 
 
 def _whole_path(scene: SceneContent, key: str) -> Path:
-    """Return the path of the value that ``key`` names, down to the component of a vector; () if it names none yet."""
+    """Return the path of the value that ``key`` names in the scene file, down to the component of a vector.
+
+    The path is () if the key names no single value; another change may still add the value.
+    """
     if key == "principal":
         return ("body", "inertia")
     if key in TENSOR:
@@ -364,7 +368,11 @@ def _table(content: Content, path: Path, key: str) -> Any:
 
 
 def _vector(scene: SceneContent, path: Path) -> Sequence[Any]:
-    """Return the three components of the vector at a path of the content, for a change of a single component."""
+    """Return the three components of the vector to which ``path`` leads in the scene's content.
+
+    A change of one component replaces the whole vector. If the content has the vector in another form, such as
+    ``omega_space``, the result is computed from the scene.
+    """
     place: Any = scene.content
     if path[-1] == "center_of_mass" and "center_of_mass" in scene.content["body"]:
         path = ("body", "center_of_mass")

@@ -56,7 +56,7 @@ GRIDS = {
     "geomspace": "geomspace(first, last, count)",
     "values": "values(a, b, ...)",
 }
-"""Name of a kind of grid (law that lists values) -> the form in which a user writes it."""
+"""Name of a law that lists the values of a quantity in a sweep, such as ``linspace`` -> its form."""
 
 
 @dataclass(frozen=True)

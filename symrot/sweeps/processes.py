@@ -48,7 +48,7 @@ def _unpacked(text: bytes) -> Job:
 
 
 def _import(text: bytes) -> None:
-    """Import the modules that a job needs, in a new process."""
+    """Import the modules that a job needs, in a new process; ``text`` is the job from :func:`packed`."""
     _unpacked(text)
 
 

@@ -80,10 +80,14 @@ def _no_form(problem: Problem) -> str:
 
 
 def _symrot(method: str) -> Callable[[Problem, float], Run]:
-    """Return the function ``prepare`` of the contestant that uses one of symrot's methods, such as ``"taylor"``."""
+    """Return a function (problem, tolerance) -> run for one of symrot's methods, such as ``"taylor"``.
+
+    The function ``run``, which is timed, computes the motion up to an end time, s; it returns the state there and the
+    number of steps.
+    """
 
     def prepare(problem: Problem, tolerance: float) -> Run:
-        # Not timed. The function ``run`` is timed: from an end time, s, to the state there and the number of steps.
+        # not timed
         propagate = propagator(problem.scene, method, tolerance)
 
         def run(stop: float) -> EndState:

@@ -241,8 +241,9 @@ def _converged(general: Problem, name: str, files: Sequence[Path], seconds: floa
 
 
 def _grid(problem: Problem) -> list[float]:
-    """Return times at which a fixed step must end, so that no step misses a narrow pulse; empty if there are
-    no pulses.
+    """Return times that integration with fixed steps must not step across, so that no step misses a narrow pulse.
+
+    The list is empty if no torque can have such a pulse.
     """
     # The steps of symrot's dop853 are so short that bounds of the torque exclude a missed pulse. Otherwise a step and
     # its half could both miss a pulse, and agree on a wrong result.

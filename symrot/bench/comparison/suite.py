@@ -198,8 +198,9 @@ LEGEND = (
 
 
 def lines(results: Mapping[str, Any]) -> list[str]:
-    """Return the table of the suite as lines of text, the first of which is the title; ``results`` come from
-    :func:`run`.
+    """Return, as lines of text with a title, a table of times of other methods divided by symrot's times.
+
+    The table has a row for each motion of the benchmark suite; ``results`` come from :func:`run`.
     """
     rows = _rows(results)
     table = columns(rows, width=room(220), wrap=0, right=range(1, len(rows[0])))

@@ -115,7 +115,10 @@ def _peak() -> float:
 
 
 def main() -> None:
-    """Print the seconds of each contestant in each round, the ratios, and the largest memory of a process."""
+    """Print a table with a row for each repetition: times of ``propagate_ensemble`` and of sweeps, ratios, memory.
+
+    The sweeps run without Dask, with one Dask worker and with two; the last row has the medians of the ratios.
+    """
     parser = argparse.ArgumentParser(description="sweeps against propagate_ensemble, and two Dask workers against one")
     parser.add_argument("--count", type=float, default=1e6)
     parser.add_argument("--seconds", type=float, default=10, help="length of each motion, s")

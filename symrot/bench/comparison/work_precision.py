@@ -197,10 +197,11 @@ def decades(runs: Sequence[dict[str, Any]], floor: float = 0.0) -> list[dict[str
 
 
 def against(rows: Sequence[dict[str, Any]]) -> list[dict[str, Any]]:
-    """Return, for each program in ``rows`` (:func:`decades`) other than symrot, its times divided by symrot's.
+    """Compare each program other than symrot with symrot: its times divided by symrot's times at equal error.
 
-    A dict of the list has the program's name (``peer``) and the ratios to symrot's steppers (``stepped``) and to all
-    methods of symrot (``all``): ``median``, ``least``, and ``ratios``, which has one for each bound of the error.
+    ``rows`` come from :func:`decades`. The result has one dict for each program, such as ``{"peer": "heyoka",
+    "stepped": {"median": 3.0, "least": 2.0, "ratios": {"1e-06": 2.0, "1e-07": 4.0}}, "all": ..}``. The ratios are to
+    symrot's fastest stepper (``stepped``), and to its fastest method, closed forms included (``all``).
     """
     peers = list(dict.fromkeys(name for row in rows for name in row["methods"] if name not in (*OURS, "symrot scipy")))
     settings = [name for name in peers if name.startswith("heyoka")]

@@ -191,7 +191,10 @@ METHODS = (
 
 
 def growth(track: Track, long: bool = False, say: Callable[[str], object] = lambda text: None) -> list[Curve]:
-    """Return the error curves of all methods that can compute this motion; ``long`` runs them for more revolutions."""
+    """Return the error curves of all methods that can compute the motion of ``track``.
+
+    With ``long``, the methods run for more revolutions; ``say`` receives a line of progress for each method.
+    """
     curves = []
     for method in METHODS:
         say(f"{track.scene.name}: {method.name} ..")

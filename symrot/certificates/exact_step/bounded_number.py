@@ -174,7 +174,7 @@ class Bounded:
 
     @property
     def computed(self) -> tuple[float, float]:
-        """The pair of the least and the largest value that the C program may have computed for inputs of the set."""
+        """The least and the largest double that the C program may have computed for this number, over all inputs."""
         below, above = (min(self.error, self.relative * abs(end) if end else 0.0) for end in (self.low, self.high))
         if self.relative >= 1:
             below = above = self.error
@@ -215,7 +215,7 @@ class Bounded:
 
 
 def point(value: float) -> Bounded:
-    """Return the double ``value`` as a number without error, the same for all inputs of the set."""
+    """Return the double ``value`` as a :class:`Bounded` that is exact and is the same for all inputs."""
     return Bounded(value, value, 0.0, 0.0)
 
 

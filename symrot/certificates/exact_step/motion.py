@@ -72,10 +72,10 @@ def motion_section(file: str, rates: Program, places: Mapping[str, str], operati
 
 
 def _degree(file: str, rates: Program, places: Mapping[str, str], operations: Operations, point: int) -> int:
-    """Check the two equations F(x, 0) = x and dF/d(dt) = rates at one random point; return a bound of their degree.
+    """Check at one random point that the C text F(x, dt) has F(x, 0) = x and dF/d(dt) = rates at F.
 
-    The degree, as rational functions of the inputs, is counted along with the values; it bounds the probability that
-    wrong equations hold at the point. CertificateError is raised if an equation is violated.
+    Return a bound of the degree of the two equations, as rational functions of the inputs; it bounds the probability
+    that wrong equations hold at the point. CertificateError is raised if an equation is violated.
     """
     for attempt in count():
         values = {

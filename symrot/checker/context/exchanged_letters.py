@@ -46,6 +46,6 @@ def by_exchanged_letters(
 
 
 def _unit(claim: Claim, name: str) -> str:
-    """Return the unit of the quantity that the context's words give to ``name``; empty without such words."""
+    """Return the unit of the quantity that the context assigns to ``name``: "N m" for "M = torque"; "" if none."""
     meaning = claim.context.meaning_of(name)
     return meaning.quantity.unit if meaning is not None else ""

@@ -1,4 +1,7 @@
-"""What a true claim leaves to a guess, such as which letter belongs to which axis: it is then only "recognised"."""
+"""Verdicts on claims that are true if a guess is right, such as which letter belongs to which axis.
+
+The verdict on such a claim is not "true" but "recognised" (equal to a derived formula), with a note on the guess.
+"""
 
 import re
 from collections.abc import Sequence
@@ -82,7 +85,11 @@ def _is_exchanged(known: Identification) -> bool:
 
 
 def with_guesses(context: Context, verdict: Verdict, stated: str) -> Verdict:
-    """Return the verdict with its likeliest formula first, and with a note such as "guessed, not stated: solid"."""
+    """Return a verdict with the recognised formula that needs the fewest guesses first, and with a note on its guesses.
+
+    The note is for instance "guessed, not stated: solid". A guess is a word in the formula's name that neither the
+    context nor ``stated``, the words implied by the name of the claim's quantity, state.
+    """
     readings = sorted(verdict.recognised_as, key=lambda known: len(guesses(context, known.name, stated)))
     verdict, likeliest = replace(verdict, recognised_as=tuple(readings)), readings[0]
     # a guess is a word in the formula's name that neither the context nor the claim's quantity states

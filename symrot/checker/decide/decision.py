@@ -95,8 +95,9 @@ def _with_letters_for_sums(equation: Equation, decision: Decision) -> Decision:
 
 
 def _with_positive_symbols(equation: Equation, decision: Decision) -> Decision:
-    """Return "true" if an equation is proven for symbols with the signs that its conditions require; otherwise
-    ``decision``.
+    """Return a decision with the verdict "true" if the signs that ``decision.conditions`` require allow a proof.
+
+    For instance, the condition x > 0 lets abs(x) be x. Otherwise return ``decision`` unchanged.
     """
     known = positive_symbols(decision.conditions)
     if not known or equation.hypotheses:

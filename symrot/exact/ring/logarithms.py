@@ -101,7 +101,10 @@ def sums_of_logarithms(products: Mapping[Expr, Product]) -> dict[Expr, Expr]:
 
 
 def _known_signs(products: Sequence[Product]) -> dict[Expr, int]:
-    """Return the signs, 1 or -1, of the factors that are known because all ``products`` are positive."""
+    """Return a map from factors to their signs, 1 or -1, for all factors whose sign is known.
+
+    A sign is known from the factor itself, or follows because all ``products`` are positive.
+    """
     factors = {factor for product in products for factor in product.powers}
     signs = {factor: sign for factor in factors if (sign := _sign(factor))}
     open_products = [product for product in products if product.sign]

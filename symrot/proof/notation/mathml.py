@@ -87,7 +87,7 @@ TALL = ("<mfrac", "<mtable", "<msqrt", "<mroot", "<munder", "∑", "∏", "∫",
 
 
 class _Translation:
-    """The translation of parsed LaTeX into items, the parts of a formula; see :class:`Item`."""
+    """The translation of parsed LaTeX into items: parts of a formula, each with its MathML and width."""
 
     def __init__(self, latex: str) -> None:
         self.latex = latex
@@ -96,7 +96,7 @@ class _Translation:
         return complaint(self.latex, "formula", node.start, "LaTeX that the pages use")
 
     def row(self, row: Row) -> list[Item]:
-        """Return the items of a parsed formula, see :class:`Item`."""
+        """Return the parts of a parsed formula, from left to right, each as an :class:`Item` with its MathML."""
         items: list[Item] = []
         kind = "sign"
         marked = False
@@ -128,7 +128,10 @@ class _Translation:
         return _joined(self.argument(node))
 
     def item(self, node: Node, after_operand: bool = False) -> Item:
-        """Return the item of one node of parsed LaTeX; with ``after_operand``, a minus sign is binary, not a prefix."""
+        """Return one node of parsed LaTeX as an :class:`Item`, with its MathML, width and kind.
+
+        With ``after_operand``, a minus sign is binary, not a prefix.
+        """
         if not isinstance(node, Token):
             return self.scripted(node, after_operand) if isinstance(node, Scripts) else ITEMS[type(node)](self, node)
         text = node.text

@@ -59,7 +59,10 @@ def on_own_clock(plan: Plan, choice: Choice, tolerance: float) -> SteppedMotion 
 
 
 def with_full_state(plan: Plan, form: ClosedForm) -> Plan:
-    """Return the plan without simplifications that eliminate states, for a motion in the closed form ``form``."""
+    """Return a plan (the equations of a scene) without the rules that eliminate states, for a motion in closed form.
+
+    The last rule of the result names the closed form ``form`` as the reason.
+    """
     # a closed form gives all states at no cost, since nothing has to be integrated
     structure = plan.structure.unreduced()
     rows, before = [], structure.reductions

@@ -32,7 +32,7 @@ Floats = NDArray[np.float64]
 
 @final
 class ConstantMotion(RestartableMotion):
-    """A motion in which every state is constant, so that the plan leaves no state to integrate."""
+    """A motion in which every state is constant, so that its equations have no state to integrate."""
 
     def from_start(self, initial: Initial) -> "ConstantMotion":
         """Return the motion from another initial state, for which the equations must have the same form."""

@@ -1,4 +1,4 @@
-"""The data that all motions of one plan share, whatever their initial states.
+"""The data that all motions of one plan, the equations of a scene, share, whatever their initial states.
 
 The *rates* are the time derivatives of the states. The *epoch* is the time of the scene from which a stepper counts
 time: the zero of its *clock*. Initial states with equations of equal form have the same *structure*.
@@ -97,9 +97,9 @@ class Setup:
 
     @cached_property
     def quantity_binding(self) -> Binding:
-        """Function from a plan to the parameters of the output quantities, each as a pair of doubles.
+        """Function that takes a plan with an initial state and returns the parameters of the output quantities.
 
-        The sum of a pair is right to 31 digits.
+        Each parameter is two consecutive doubles, whose sum is right to 31 digits.
         """
         return Binding(self.kernel.quantity_parameters, self.plan, two_doubles)
 
@@ -132,7 +132,7 @@ class Setup:
 
 @final
 class SteppedSetup:
-    """Setup shared by all motions of one plan that are integrated in C, with the compiled library."""
+    """The data that all motions of one plan in C share: a :class:`Setup` and the compiled library."""
 
     def __init__(self, setup: Setup, library: Path) -> None:
         self.setup, self.library = setup, library

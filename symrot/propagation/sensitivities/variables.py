@@ -254,7 +254,7 @@ def slopes(values: Callable[[Fraction], Numbers], step: Fraction, name: str) -> 
 
 
 class _Differences:
-    """Difference quotients of numbers by a change of a variable, for steps of several sizes."""
+    """Difference quotients of numbers, such as moments of inertia, by one variable, for several step sizes."""
 
     # weights of second order at places in steps: central, then to the right and to the left, for example where the mass
     # would become negative
@@ -287,7 +287,7 @@ class _Differences:
         return self._points[place]
 
     def slope(self, each: str) -> Fraction | None:
-        """Return the derivative, by the variable, of the number with the name ``each``; None if it has none."""
+        """Return the derivative of the number named ``each`` by the variable; None if it does not exist."""
         first, second = self._quotient(each, 1), self._quotient(each, 2)
         if self._bends(each):
             return None
@@ -302,10 +302,10 @@ class _Differences:
         return total / (size * self._step)
 
     def _bends(self, each: str) -> bool:
-        """Return whether the number with the name ``each`` has a kink at the variable's present value.
+        """Return whether the number named ``each`` has a kink at the present value of the variable.
 
         At a kink, the second difference is proportional to the step, elsewhere to the square of the step. The result is
-        False if only values on one side of the present one are valid.
+        False if only values of the variable on one side of the present one are valid.
         """
         if self._weights is not self.SCHEMES[0]:
             return False

@@ -16,12 +16,12 @@ SLIVER = 2.0**-100  # part of a segment: so near its end, every formula has the 
 
 
 class Segment(NamedTuple):
-    """Interval between switching times, from ``start`` to ``stop``, s.
+    """Interval of time from ``start`` to ``stop``, s, between two switching times or ends of the motion.
 
-    Torques are evaluated at ``first`` and ``last``: just inside a switching time, otherwise at the ends.
+    Torques are evaluated from ``first`` to ``last``: these are the ends themselves or, at a switching time, where a
+    torque may jump, times just inside the interval.
     """
 
-    # first and last lie just inside a switching time, where a torque may jump
     start: float
     stop: float
     first: float

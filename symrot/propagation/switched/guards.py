@@ -73,7 +73,8 @@ class Guards(RunState):
     def _guard_value(self, mode: str, place: tuple[float, Floats] | None = None) -> float:
         """Return the value of a switching function's argument, now or at ``place``, a pair (time, states).
 
-        For floor(x) it is x minus the present floor. ``mode`` names the number that replaces the function in formulas.
+        ``mode`` is the name that stands for the function's value in formulas. For floor(x) the result is x minus the
+        present floor.
         """
         # the floor is its value n in the present equations: it changes where x - n is 0 or 1
         regime = self._regime(self.modes)
@@ -106,9 +107,10 @@ class Guards(RunState):
         return np.broadcast_to(outside > ERRORS * self.motion.tolerance, times.shape)
 
     def _oriented(self, regime: Regime, guard: Guard, place: tuple[float, Floats]) -> float:
-        """Return the value of a guard's formula, which falls through zero where a function (sign, ..) switches; or NaN.
+        """Return the value of a guard's formula at ``place``, a pair (time, states); NaN if it has no value there.
 
-        It is NaN if the formula has no value at ``place``, a pair (time, states).
+        The formula decreases through zero where a function (sign, floor, ..) switches, which ends the motion
+        ``regime``.
         """
         try:
             return float_value(parse(guard.formula), self._values(regime, place))

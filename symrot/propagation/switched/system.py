@@ -49,11 +49,11 @@ class SwitchedSystem:
 
     @cached_property
     def twins(self) -> dict[str, list[tuple[str, int]]]:
-        """The functions that switch together with each sign or abs in one torque, as sign(omega_3) and abs(2*omega_3).
+        """For each sign, abs, ..: the functions of the same torque whose arguments are zero together.
 
-        A function is named by its mode, the number that replaces it in formulas. A map from each mode to a list of
-        pairs (mode, 1 or -1), which includes this mode; -1 means that the argument has the opposite sign of the first
-        argument in the list.
+        Examples are sign(omega_3) and abs(2*omega_3). The property is a map from the name of a function's mode, the
+        number that replaces the function in formulas, to a list of pairs (mode, 1 or -1), with one pair for the
+        function itself. -1 means that the argument has the opposite sign of the first argument in the list.
         """
         numbers: dict[str, Node] = {name: ("number", value) for name, value in self.constants.items()}
         for mode in self.switches:
@@ -71,10 +71,11 @@ class SwitchedSystem:
         return twins
 
     def tied(self, held: frozenset[str]) -> dict[str, tuple[str, int]]:
-        """Return the functions that switch together with the functions ``held``, whose arguments stay at zero.
+        """Return the functions that switch together with a held function, as abs(2*omega_3) with sign(omega_3).
 
-        A map from the name of a function to (name of a held function, 1 or -1); -1 means that the arguments of these
-        two functions have opposite signs.
+        The arguments of the functions ``held`` stay at zero. The result is a map from the name of a function to the
+        pair (name of the held function, 1 or -1); -1 means that the arguments of these two functions have opposite
+        signs.
         """
         # held: the argument of the function stays at zero; a function that switches at the same time follows
         return {twin: (mode, sign) for mode in held for twin, sign in self.twins[mode] if twin != mode}
@@ -233,7 +234,12 @@ def _bends(switch: Switch | TorqueSwitch) -> bool:
 def _chosen(
     torque: TorqueStructure, modes: Modes, held: frozenset[str], tied: Mapping[str, tuple[str, int]]
 ) -> TorqueStructure:
-    """Return a torque reduced to the branches of ``where(condition, u, v)`` that apply for given values of sign, .."""
+    """Return a torque in which the branch that applies replaces each ``where(condition, u, v)``.
+
+    ``modes`` has the values of the switching functions (sign, abs, ..). The functions ``held`` become unknowns of the
+    equations; functions with jumps in ``tied`` become the same unknowns or their negatives
+    (:meth:`SwitchedSystem.tied`). A torque without formulas is returned unchanged.
+    """
     if not isinstance(torque, FormulaTorque):
         # no formulas
         return torque
