@@ -195,8 +195,9 @@ def _correction(claim: Claim, verdict: Verdict, formula: PrintedFormula | None) 
 
 
 def _inner(kind: str) -> Callable[[Node], Node]:
-    """Return a function that maps a node of one ``kind`` to its first argument, ``-a`` to a for "neg", and any other
-    node to itself.
+    """Return a function that replaces a node of the given kind by its first argument: ``-a`` by a for "neg".
+
+    The function returns any other node unchanged.
     """
     return lambda node: node.args[0] if node.kind == kind else node
 

@@ -177,10 +177,10 @@ def _noticed(omega: Floats) -> Floats:
 
 
 def free_bodies(body: FreeRigidBody, omega: Floats, start: Floats) -> Batch:
-    """Return the motions of one free body from n initial states as a batch; for ``omega``, :func:`usual` must be True.
+    """Return the motions of one free body from n initial states as a batch.
 
-    ``start`` are the initial attitudes that :func:`attitudes` returns: two doubles for each component of a quaternion,
-    shape (n, 8), or (8,) for one attitude.
+    :func:`usual` must be True for all rows of ``omega``. ``start`` are the initial attitudes that :func:`attitudes`
+    returns: two doubles for each component of a quaternion, shape (n, 8), or (8,) for one attitude.
     """
     exact = np.empty((len(omega), 8))
     exact[:, :6] = body.gaps

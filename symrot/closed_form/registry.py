@@ -154,7 +154,8 @@ def _driven_axis(scene: Scene) -> int | None:
 def _driven_symmetry_axis(scene: Scene) -> int | None:
     """Return the index of the symmetry axis about which a constant torque drives the body.
 
-    None if the motion has no closed form.
+    Return None if there is no such axis, or if the scene's output includes the attitude and the body is damped: then
+    the attitude has no closed form.
     """
     if not _is_driven(scene):
         return None

@@ -51,7 +51,7 @@ from symrot.kinematics.hamilton import hamilton
 __all__ = ["Point", "UndefinedValue", "agree", "entries_of", "points"]
 
 DERIVATIVES = 6
-"""The number of values that a point has for each function of time: the function's own and those of its derivatives."""
+"""Number of values that a test point has for a function of time: one for the function, five for its derivatives."""
 
 HEAVIEST = 3**5
 """Largest ``weight`` (cost of a multiplication) of a `Point` from which a derivative can be computed.

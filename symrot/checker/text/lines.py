@@ -45,8 +45,8 @@ def verdict_on_parts(
 
     Definitions of names that other lines use do not count. The verdict is "doubtful" if each equation is recognised,
     but as formulas of different bodies, frames or sequences.
-    ``verdicts`` are those on the equations of ``lines``, in order. If ``has_units``, the first side of a chain is
-    a number with a unit, not a name.
+    ``verdicts`` are the verdicts on the equations of ``lines``, in order. If ``has_units``, the first side of a chain
+    is a number with a unit, not a name.
     """
     remaining = iter(verdicts)
     counted, notes = [], []
@@ -95,8 +95,9 @@ def verdict_on_parts(
 def _with_fitting_line(
     claims: Sequence[Claim], lines: Sequence[tuple[str, Collection[str], Verdict]], notation: Notation, verdict: Verdict
 ) -> Verdict:
-    """Return the verdict on lines that contradict each other, with the edit of one line that makes all of them fit, if
-    there is one.
+    """Return ``verdict``, on lines for different bodies, frames or sequences, with an edit of one line as a repair.
+
+    After the edit all lines are for the same body, frame or sequence. Return ``verdict`` unchanged if there is none.
     """
     if len(lines) != len(claims) or len(lines) > MOST_LINES or any(claim.hypotheses for claim in claims):
         return verdict

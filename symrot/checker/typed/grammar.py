@@ -31,7 +31,7 @@ def _is_matrix_name(node: Node) -> bool:
 def _from_matrix(factors: Sequence[Node]) -> int:
     """Return the index in ``factors`` at which the left operand of a cross product starts.
 
-    It is the index of R in ``R a × b``, which means (R a) × b for a matrix R, and otherwise that of the last factor.
+    In ``R a × b``, which means (R a) × b for a matrix R, this is the index of R; otherwise that of the last factor.
     """
     return len(factors) - (2 if len(factors) > 1 and _is_matrix_name(factors[-2]) else 1)
 

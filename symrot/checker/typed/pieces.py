@@ -386,8 +386,9 @@ class PiecesPart(OpenFunctionsPart):
         return Node("neg", None, (node,), node.span) if negative else node
 
     def element_ahead(self, has_limits: bool) -> str:
-        """Return the element that ends the integral at the cursor: dm, dV or, after limits, dx. It is dm if there is
-        none.
+        """Return the differential that ends the integral at the cursor: dm, dV or, after limits, dx.
+
+        Return dm if the integral has no differential.
         """
         depth = inner = 0
         for before, token in pairwise(self.tokens[self.index - 1 :]):

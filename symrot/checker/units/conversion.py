@@ -184,8 +184,8 @@ class _Interpretation:
 def measured_text(source: str) -> Measured | None:
     """Return a text with a name such as unit_1 in place of each unit or product of units.
 
-    Return None if the text has no units, if it has other names than one that is its left side, or if its one-letter
-    units are probably quantities, as m and g in ``T = 2 m g``.
+    Return None if the text has no units, if it has names besides units (one name as the left side is allowed), or if
+    its one-letter units are probably quantities, as m and g in ``T = 2 m g``.
 
     Raises
     ------
@@ -272,7 +272,9 @@ def _read(plain: str, way: _Interpretation) -> Measured | None:
 
 
 def numeric_end(source: str) -> tuple[str, str]:
-    """Split a chain of equations into formulas and a chain of numbers with units; ("", "") if it does not end so.
+    """Split a chain of equations into (formulas, numbers with units).
+
+    Return ("", "") if the last two sides are not both numbers with units.
 
     Examples
     --------

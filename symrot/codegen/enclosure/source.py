@@ -115,9 +115,10 @@ def rounding_source(program: Program) -> str:
 
 
 def _rounded_disc(system: Recurrences, number: int, places: Mapping[str, str], linear: Mapping[int, bool]) -> str:
-    """Return the C expression of a disc around the computed value of series ``number`` that contains the exact value.
+    """Return the C expression of a disc around the computed value of a quantity that contains the exact value.
 
-    ``linear`` are the series that depend on t alone, each with whether it is linear in t.
+    ``number`` is the index of the quantity in ``system.series``. ``linear`` has the indices of the quantities that
+    depend on t alone, each with whether it is linear in t.
     """
     # the low part of the time is added to sums, and to the phases of the rule clock
     series, disc = system.series[number], _disc(system, number, places)

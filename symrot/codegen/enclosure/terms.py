@@ -69,7 +69,7 @@ def enclosure(system: Recurrences) -> Enclosure | None:
 
 
 def _needed(system: Recurrences, terms: Sequence[Sequence[tuple[Node, int]]]) -> tuple[int, ...]:
-    """Return the series of the terms, with their operands and the operands of these, in order of evaluation."""
+    """Return the indices of all series that the evaluation of the terms needs, in the order of evaluation."""
     needed: set[int] = set()
     waiting = [operand for own in terms for _, operand in own]
     while waiting:
@@ -83,7 +83,7 @@ def _needed(system: Recurrences, terms: Sequence[Sequence[tuple[Node, int]]]) ->
 def _degree(series: Series, degrees: list[int]) -> int:
     """Return the degree of a series as a polynomial in the states, t, sin(a t + b) and cos(a t + b).
 
-    The degree is BEYOND or more if a pulse may hide in the series, as in exp(-t^2).
+    Return BEYOND or more for a polynomial of high degree and for a quantity that is no such polynomial, as exp(-t^2).
     """
     # degrees[i]: the degree of series i
     if series.rule in ("state", "time"):
