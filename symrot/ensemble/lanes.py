@@ -113,7 +113,7 @@ class _Job(ctypes.Structure):
 
 
 class Outcome(NamedTuple):
-    """The states of n motions at their m times, shape (n, m, N), and the cost of each motion."""
+    """The results of n motions: their N states at m times, shape (n, m, N), and the cost of each motion, shape (n,)."""
 
     states: Floats  # NaN at times that a motion did not reach
     steps: Integers

@@ -23,7 +23,7 @@ __all__ = ["Chain", "Link", "chains"]
 
 @dataclass(frozen=True)
 class Link:
-    """One expression of a chain, with the ``reason`` why it equals the expression before it."""
+    """One expression in a chain of equal expressions, with the ``reason`` why it equals the expression before it."""
 
     expression: Expr
     reason: str

@@ -106,7 +106,7 @@ def _is_utf8(content: bytes) -> bool:
 
 
 def inertial_text(inertial: Inertial, form: str) -> str:
-    """Return the element ``<inertial>`` in principal form.
+    """Return the XML element ``<inertial>`` of a link, with principal axes and a diagonal tensor.
 
     Parameters
     ----------

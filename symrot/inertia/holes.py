@@ -182,9 +182,10 @@ def _crosses(plane: tuple[Vec, float], points: Sequence[Vec], rounding: float) -
 
 
 def _carry(parts: Sequence[DensePart], holes: Sequence[DensePart]) -> bool:
-    """Return whether the sum of the densities of ``parts``, which overlap, is at least the sum of those of ``holes``.
+    """Return whether the densities of ``parts`` certainly add up to at least the sum of the densities of ``holes``.
 
-    One per cent less is allowed (:data:`DENSITY`).
+    All of them overlap; one per cent less is allowed (:data:`DENSITY`). A part whose density is a polynomial counts
+    only for a single hole with the same polynomial and position.
     """
     filled = sum(part.density for part in parts if isinstance(part.density, Fraction))
     emptied = Fraction(0)

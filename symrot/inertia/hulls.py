@@ -203,7 +203,7 @@ def _farthest_along(piece: Piece, direction: Vec) -> Vec:
 
 
 def farthest(solid: Solid3, direction: Vec) -> Vec:
-    """Return the point of a shape that is farthest along a unit vector ``direction``, both in the axes of the body."""
+    """Return a point of a shape's convex hull that is farthest along the unit vector ``direction``, in body axes."""
     points = [_farthest_along(piece, direction) for piece in solid.hull]
     return max(points, key=lambda point: dot(point, direction))
 

@@ -175,7 +175,7 @@ class Limit:
 
 @dataclass(frozen=True)
 class RateFacts:
-    """What a :class:`RateMatrix` knows besides its entries: frame, parameters, determinant, inverse."""
+    """The properties of a :class:`RateMatrix` besides its entries: frame, parameters, determinant, inverse."""
 
     name: str
     frame: str

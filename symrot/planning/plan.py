@@ -133,7 +133,7 @@ class Plan:
 
     @cached_property
     def _places(self) -> tuple[int, ...]:
-        """The index in :data:`STATES` (all possible states: omega, quaternion, theta) of each state of the plan."""
+        """For each state of the plan, its index in :data:`STATES`, the list of all possible states."""
         return tuple([STATES.index(name) for name in self.states])
 
     def from_start(self, initial: Initial) -> "Plan":

@@ -44,7 +44,9 @@ UNIT_FIELDS = ("direction", "attitude")  # fields in which a component equal to 
 
 
 class RuleOutcome(NamedTuple):
-    """The decision of one rule of a plan; the explanation of a plan contains one line for each decision.
+    """The decision of one rule that may simplify the equations of a scene, with its reason.
+
+    The explanation of a plan contains one line for each decision.
 
     Attributes
     ----------

@@ -136,7 +136,7 @@ def _switches(functions: list[str]) -> "PlanRow":
 
 
 def _samples(plan: Plan) -> "list[PlanRow]":
-    """Return a list with one row of the table `symrot explain`, about a torque given by samples in a file.
+    """Return a list with one row of the table of `symrot explain`, about a torque given by samples in a file.
 
     The list is empty if the scene has no such torque.
     """
@@ -153,8 +153,8 @@ def facts(plan: Plan) -> "PlanReport":
     """Return the table of `symrot explain` as data for JSON.
 
     A row that counts operations has the number of remaining operations of each kind as ``operations``. If the row is
-    about a rule that may shorten the equations, ``saved`` is the number of operations that the rule saves. Otherwise
-    both are None.
+    about a rule that may shorten the equations, ``saved`` is the number of operations that the rule saves. A
+    value that a row does not have is None.
     """
     scene = plan.scene
     ladder = _ladder(plan)

@@ -83,8 +83,8 @@ class Sensitivities(Mapping[str, Sensitivity]):
     Attributes
     ----------
     variables : tuple of str
-        The m variables: the requested names, those of a vector with the number of the component, such as ``omega_2``;
-        each of them is accepted as a key, too.
+        The m variables: the requested names, for a vector with the number of the component, such as ``omega_2``. The
+        name of each variable is accepted as a key, too.
     units : tuple of str
         Units of the variables; empty for a parameter of a formula, whose unit no scene states.
     groups : mapping

@@ -17,7 +17,7 @@ LETTERS = {"A": 1, "B": 2, "C": 3, "p": 1, "q": 2, "r": 3, "x": 1, "y": 2, "z": 
 """Single letter -> its axis: principal moments, the angular velocity of an aircraft, and coordinates."""
 
 CYCLIC = ((1, 2, 3), (2, 3, 1), (3, 1, 2))
-"""The orders of axes that keep right-handed axes right-handed; Euler's equations change signs under the others."""
+"""The orders of axes that keep right-handed axes right-handed; Euler's equations change signs under other orders."""
 
 COMPONENTS = {"first": "1", "second": "2", "third": "3", "scalar": "0"}
 

@@ -137,7 +137,7 @@ def with_all_conditions(verdict: Verdict, conditions: Sequence[Sequence[str]], b
 
 
 def _as_named_chain(line: Sequence[Claim], verdicts: Sequence[Verdict], notation: Notation) -> list[Verdict]:
-    """Return the verdicts on the equations of a chain ``name = a = b``, where that on ``a = b`` may be replaced.
+    """Return the verdicts on the equations of a chain ``name = a = b``; the verdict on ``a = b`` may be replaced.
 
     If ``a = b`` is no identity, and a and b each have a letter that the other one lacks, the verdict on ``name = b``
     replaces the verdict on ``a = b``. If b is a number and ``a = b`` is false in general, but a depends on letters as

@@ -52,7 +52,7 @@ class Series(NamedTuple):
 
     The body rotates about a vector n, fixed in space and near the direction of the angular velocity (kappa, 0, x).
     ``g`` and ``c`` give the components of n normal to the angular velocity; ``e`` gives delta, the angle of rotation
-    minus the integral of r = sqrt(kappa^2 + x^2). y = radius2/r^2, where radius2 is the smallest r^2 of the series.
+    minus the integral of r = sqrt(kappa^2 + x^2). y is radius2/r^2; radius2 is the smallest r^2 for which they hold.
     """
 
     # whether kappa is above WIDE: the series are then accurate at every x, otherwise for x above NEAR

@@ -20,10 +20,10 @@ from symrot.exact.ring.roots import sign_of
 __all__ = ["Product", "logarithms_in", "product_of", "sums_of_logarithms"]
 
 MOST_BITS_FACTORED = 64
-"""A number with more bits is not factored into primes."""
+"""Largest number of bits of a number that is factored into primes."""
 
 MOST_TERMS = 60
-"""A numerator or denominator, in the argument of a logarithm, that has more terms is not factored."""
+"""Largest number of terms of a polynomial, in the argument of a logarithm, that is factored."""
 
 
 @dataclass(frozen=True)
@@ -122,7 +122,7 @@ def _known_signs(products: Sequence[Product]) -> dict[Expr, int]:
 
 
 def _sign(factor: Expr) -> int:
-    """Return 1 or -1 for a factor whose sign SymPy's assumptions or its value show, else 0."""
+    """Return the sign, 1 or -1, of a factor if its value or SymPy's assumptions show it, otherwise 0."""
     if factor.is_number:
         interval = enclosure(factor)
         return 0 if interval is None or 0 in interval else 1 if interval.a > 0 else -1

@@ -68,10 +68,10 @@ class Crossings:
         self._last: tuple[Interval, Instant, dict[str, Flip], bool] | None = None  # the last jump of the rates
 
     def across(self, before: Interval, after: Interval, by: Floats) -> Floats:
-        """Return the derivatives of the states after a switch between two intervals; ``by`` are those before, (7, m).
+        """Return the derivatives of the states after a switch between two intervals, shape (7, m).
 
-        The derivatives of the time of the switch are appended to :attr:`switchings`. Raise PropagationError if the
-        derivatives after the switch do not exist.
+        ``by`` has the derivatives before the switch. The derivatives of the time of the switch are appended to
+        :attr:`switchings`. Raise PropagationError if the derivatives after the switch do not exist.
         """
         guards = self.guards
         changed = [

@@ -36,9 +36,9 @@ TOLERANCE = 1e-16
 
 
 def rates_of(plan: Plan) -> tuple[Program, Parameters]:
-    """Return the rates (time derivatives of the states) in the equations of a plan as a program, with their parameters.
+    """Return the rates (time derivatives of the states) in the equations of a scene's plan, as a program.
 
-    A parameter is a pair (name, formula).
+    The second result has the parameters of the program, pairs (name, formula).
     """
     key = f"rates alone\n{kernel_key(plan)}"
     # a clock counts time from an epoch, which is a further constant in the formulas

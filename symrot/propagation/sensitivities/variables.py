@@ -201,9 +201,10 @@ Numbers = Mapping[str, Fraction]
 
 
 def difference(scene: Scene, variable: Variable, numbers: Callable[[Scene], Numbers]) -> dict[str, Fraction]:
-    """Return the derivatives, by one variable, of those exact numbers of a scene that depend on it.
+    """Return the derivatives of exact numbers of a scene by one variable, as a map from name to derivative.
 
-    For the mass of a unit sphere and its moments of inertia: ``{"I_xx": Fraction(2, 5), ..}``.
+    Numbers that do not depend on the variable are left out. For the mass of a unit sphere and its moments of inertia:
+    ``{"I_xx": Fraction(2, 5), ..}``.
 
     Parameters
     ----------

@@ -1,4 +1,4 @@
-"""Edits of a claim's formula that make it a known one."""
+"""Edits of a claim's formula, such as another sign, that turn the formula into one that symrot knows."""
 
 import re
 from collections.abc import Collection, Iterator, Mapping

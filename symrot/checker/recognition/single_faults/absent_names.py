@@ -22,7 +22,7 @@ MATRIX_ENTRY = re.compile("R_[1-3]{2}")
 """Pattern of the name of a rotation matrix's entry in known formulas, such as R_12."""
 
 USUAL = {"c_3": "l", "mu": "m", "omega_3": "omega", "domega_3": "alpha"}
-"""Name in known formulas -> the name that books use where it is the only quantity of its kind."""
+"""Symbol in known formulas -> the letter that books use if there is one such quantity only: omega, not omega_3."""
 
 
 def _absent_of_product(known: str, renaming: dict[str, str | None]) -> str | None:

@@ -100,8 +100,8 @@ def _symbols_of(definitions: Mapping[str, Node], numeric: NumericFilter) -> set[
 def _active(named: NamedFormula, atoms: dict[Node, Values], places: list[PointOfLetters]) -> dict[Node, Values]:
     """Return the letters among ``atoms`` on which the claim's formula depends: for a trace, only the diagonal entries.
 
-    Returned too are the letters that are factors of the claim's left side. If there are fewer than MANY ``atoms``, all
-    are returned.
+    Letters that are factors or arguments of the claim's left side are returned too. If there are fewer than MANY
+    ``atoms``, all are returned.
     """
     formula = named.formula
     if len(atoms) < MANY:

@@ -149,7 +149,7 @@ class Valued:
 
 
 Inward = Callable[[Values], Values | None]
-"""A function that takes the values that an operation should have at the test points, and returns those of an argument.
+"""A function from the values that an operation should have at the test points to the values of one of its arguments.
 
 For the argument a of a + b, the function subtracts the values of b. It returns None if no values of the argument fit.
 """

@@ -41,9 +41,10 @@ class Solution(NamedTuple):
 
 @cache
 def solved_relations() -> tuple[SolvedRelation, ...]:
-    """Return the known relations (equations), each solved for every symbol that `_solution` can isolate.
+    """Return the known relations (equations), each solved for every symbol that is a factor of each term with it.
 
-    They are also solved for angles that occur only in their cosine or only in their sine, if this is a factor of terms.
+    The factor must have the same exponent, 1 or 2, in all these terms, and a term without it must exist. Relations are
+    solved for an angle if it occurs only in its cosine or only in its sine, and this is such a factor with exponent 1.
     """
     solved = []
     for known in (known for group in by_fingerprint().values() for known in group if known.is_relation):

@@ -28,7 +28,7 @@ MULTIPLES = {Fraction(2): "double_half_angle", Fraction(1, 2): "half_angle"}
 
 
 class Variant(NamedTuple):
-    """A change of a formula's part that undoes a usual fault, with the part's values after it at the test points."""
+    """A change of a formula's part that undoes a usual fault, and the changed part's values at the test points."""
 
     change: Correction
     values: Values
