@@ -109,7 +109,7 @@ def _narrow_features(plan: Plan) -> "PlanRow":
     try:
         terms = enclosure(recurrences(scene_kernel(plan).rates))
     except InputError as reason:  # without a Taylor series there are no bounds inside a step
-        return _row("narrow features", False, f"a step may miss them: {reason}")
+        return _row("narrow features", False, f"a step may miss a narrow feature: {reason}")
     if terms is None:
         why = "the formulas are polynomials of low degree, or sines and cosines of time: they have no narrow features"
         return _row("narrow features", True, why)
@@ -129,14 +129,14 @@ def _switches(functions: list[str]) -> "PlanRow":
         if any(bent is bends for _, bent in named)
     ]
     why = (
-        f"{'; '.join(parts)}: their times are located to the last bits by enclosures, and steps end exactly there; "
-        "where both sides of a jump lead back to it, the motion slides along it"
+        f"{'; '.join(parts)}: these times are located to the last bits, by bounds of the formulas (an enclosure), and "
+        "steps end exactly there; where both sides of a jump lead back to the jump, the motion slides along it"
     )
     return _row("switches", False, one_line(why))
 
 
 def _samples(plan: Plan) -> "list[PlanRow]":
-    """Return a list with one row of the table `symrot explain`, about a torque given by samples in a file.
+    """Return a list with one row of the table of `symrot explain`, about a torque given by samples in a file.
 
     The list is empty if the scene has no such torque.
     """
@@ -153,8 +153,8 @@ def facts(plan: Plan) -> "PlanReport":
     """Return the table of `symrot explain` as data for JSON.
 
     A row that counts operations has the number of remaining operations of each kind as ``operations``. If the row is
-    about a rule that may shorten the equations, ``saved`` is the number of operations that the rule saves. Otherwise
-    both are None.
+    about a rule that may shorten the equations, ``saved`` is the number of operations that the rule saves. A
+    value that a row does not have is None.
     """
     scene = plan.scene
     ladder = _ladder(plan)

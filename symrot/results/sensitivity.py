@@ -83,8 +83,8 @@ class Sensitivities(Mapping[str, Sensitivity]):
     Attributes
     ----------
     variables : tuple of str
-        The m variables: the requested names, those of a vector with the number of the component, such as ``omega_2``;
-        each of them is accepted as a key, too.
+        The m variables: the requested names, for a vector with the number of the component, such as ``omega_2``. The
+        name of each variable is accepted as a key, too.
     units : tuple of str
         Units of the variables; empty for a parameter of a formula, whose unit no scene states.
     groups : mapping
@@ -138,7 +138,7 @@ class Sensitivities(Mapping[str, Sensitivity]):
     def __repr__(self) -> str:
         *motions, samples = self.omega.shape[:-2]
         of = f"{motions[0]} trajectories, " if motions else ""
-        return f"<Sensitivities by {', '.join(self.variables)}: {of}{samples} samples>"
+        return f"<Sensitivities with respect to {', '.join(self.variables)}: {of}{samples} samples>"
 
     def of(self, motion: int) -> "Sensitivities":
         """Return the derivatives of motion number ``motion``, from 0, of an ensemble."""
@@ -175,7 +175,7 @@ class Sensitivities(Mapping[str, Sensitivity]):
             for quantity, (components, own, frame, meaning) in OUTPUTS.items():
                 names = tuple(f"{component}{BY}{variable}" for component in components)
                 values = getattr(self, quantity)[..., number]
-                text = f"derivative of the {meaning}, by {variable}"
+                text = f"derivative of the {meaning} with respect to {variable}"
                 items.append(
                     Labelled(f"{quantity}{BY}{variable}", values, names, quotient_unit(own, unit), frame, text)
                 )
@@ -187,7 +187,7 @@ def event_time_items(variables: Sequence[str], units: Sequence[str], slopes: Flo
     items = []
     for number, (variable, unit) in enumerate(zip(variables, units, strict=True)):
         name = f"{TIME}{BY}{variable}"
-        text = f"derivative of the time of the event, by {variable}"
+        text = f"derivative of the time of the event with respect to {variable}"
         items.append(Labelled(name, slopes[:, number], (name,), quotient_unit("s", unit), "", text))
     return items
 

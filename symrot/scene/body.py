@@ -288,7 +288,7 @@ def _read_shape_table(value: Mapping[str, Any], where: str, others: Mapping[str,
     ``others`` are further keys that the table may have, such as ``name``.
     """
     if "shape" not in value:
-        fail(f"{where}.shape", f"one of the shapes {', '.join(SHAPES)}, the key is missing")
+        fail(f"{where}.shape", f"one of the shapes {', '.join(SHAPES)}; the key is missing")
     shape = _shape_name(value["shape"], f"{where}.shape")
     dimensions = [dimension.name for dimension in shape.dimensions]
     values = read_table(value, where, {

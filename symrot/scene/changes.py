@@ -177,7 +177,7 @@ def in_order(scene: SceneContent, changes: Mapping[str, Any]) -> Content:
         path = _whole_path(scene, key)
         for other, before in paths.items():
             if path and path == before:
-                raise InputError(f"{key}: expected each value once, got {_text(Place(path))} by {other}, too")
+                raise InputError(f"{key}: expected each value once, but {other} sets {_text(Place(path))} too")
             if path and before and _exclude(path, before):
                 raise InputError(f"{key}: expected either {other} or {key}, since each replaces the other, got both")
         paths[key] = path
@@ -271,7 +271,7 @@ def _place(scene: SceneContent, key: str) -> Place:
 def path_of(key: str) -> Path:
     """Return a dotted name as a path of keys and indices: ``torque[0].weight`` -> ``("torque", 0, "weight")``.
 
-    The result is () if ``key`` is no such name.
+    The result is () if ``key`` is not a dotted name.
     """
     steps: list[str | int] = []
     position = 0
@@ -389,11 +389,10 @@ def _vector(scene: SceneContent, path: Path) -> Sequence[Any]:
 
 
 def _constant_of_torque(scene: SceneContent, path: Path) -> Fraction | tuple[Fraction, ...] | None:
-    """Return the exact value of a torque's constant that the file does not give, but that follows from others.
+    """Return the exact value of a torque's constant that the file does not give, but that follows from other values.
 
-    The weight, for instance, follows from the mass and the acceleration of gravity.
-
-    None if the path names no such constant.
+    The weight, for instance, follows from the mass and the acceleration of gravity. None if ``path`` leads to no
+    constant of a torque.
     """
     kinds = [torque.get("kind") for torque in scene.content.get("torque", ())]
     if path[0] != "torque" or len(path) != 3 or not isinstance(path[1], int) or path[1] >= len(kinds):

@@ -1,6 +1,7 @@
-"""Computation of the chunks of a sweep by the workers of a Dask cluster.
+"""Computation of the chunks of a sweep (many motions of a scene with varied values) by the workers of a Dask cluster.
 
-Workers on this machine write their chunks into the file of the sweep; others send them to this process, which writes.
+Workers on this machine write their chunks into the file of the sweep; other workers send them to this process, which
+writes.
 """
 
 from collections import deque

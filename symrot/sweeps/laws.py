@@ -73,7 +73,10 @@ class Distribution:
 
 @dataclass(frozen=True)
 class Grid:
-    """A list of the values that one quantity takes in a sweep; each is combined with all values of the other grids."""
+    """A list of the values that one quantity takes in a sweep.
+
+    Each value is combined with all values of the other grids.
+    """
 
     values: tuple[float, ...]
 

@@ -54,7 +54,7 @@ class Certificate:
     files : tuple of Path
         The files that were written.
     objects_compared : bool
-        Whether object code was compared in this call, not only in an earlier one.
+        Whether the call of :func:`certify` that made this object compared object code, not only an earlier call.
 
     Examples
     --------
