@@ -226,7 +226,7 @@ def contest(name: str, many: int = MANY) -> tuple[list[Contestant], list[str]]:
 
 
 def measure(contestants: Sequence[Contestant], rounds: int) -> None:
-    """Time all contestants in rounds, and append the times to ``seconds`` of each contestant."""
+    """Time the kernels of all tools, one after the other in each round, and append the times to ``seconds`` of each."""
     draw = Random(5)
     for number in range(rounds):
         # The previous contestant fills the caches, so the order changes.

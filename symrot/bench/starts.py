@@ -89,7 +89,9 @@ def _start(scene: Scene) -> tuple[Floats, Floats]:
 
 
 def _medians(one: Callable[[], object], other: Callable[[], object], rounds: int) -> tuple[float, float]:
-    """Time two functions alternately; return two medians in us: the time of ``one``, and its excess over ``other``."""
+    """Time two functions alternately; return two medians, microseconds: the time of ``one``, and its excess over
+    ``other``.
+    """
     times = np.empty((rounds, 2))
     for k in range(rounds):
         began = process_time_ns()
@@ -103,7 +105,7 @@ def _medians(one: Callable[[], object], other: Callable[[], object], rounds: int
 
 
 def _call(propagate: Propagator, start: dict[str, Any], rounds: int) -> tuple[float, float]:
-    """Return two times, us, of a propagator's call with a new initial state: the call, and its part outside of C.
+    """Return two times, microseconds, of a propagator's call with a new initial state: in all, and outside of C.
 
     ``start`` holds the new ``omega``, the new ``quaternion``, or both.
     """
@@ -117,7 +119,7 @@ def _call(propagate: Propagator, start: dict[str, Any], rounds: int) -> tuple[fl
 
 
 def _in_c(motion: Any, initial: Any, rounds: int) -> float:
-    """Return the time, us, in which C computes the constants of a closed form from a new initial state.
+    """Return the time, microseconds, in which C computes the constants of a closed form from a new initial state.
 
     It is 0 for steppers, which have no such constants, and for the closed forms of libraries ``axial`` and ``spin_up``,
     for which the time in C is not separated from the time in Python.

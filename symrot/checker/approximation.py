@@ -72,8 +72,10 @@ def _verdict(source: str) -> Verdict | None:
 
 
 class _Unknown(Exception):
-    """Exception raised if comparing Taylor coefficients decides nothing: two of them cannot be compared, or all up to
-    the power MOST_POWER are equal although both formulas are not proven to be.
+    """Exception raised if comparing Taylor coefficients decides nothing.
+
+    Two coefficients cannot be compared, or all up to the power MOST_POWER are equal, but the formulas are not proven
+    equal.
     """
 
 

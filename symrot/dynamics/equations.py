@@ -258,7 +258,7 @@ def sliding(equations: Equations, held: list[tuple[FormulaTorque, str]]) -> Equa
 
 
 def hurwitz_determinants(matrix: Matrix) -> tuple[Expr, ...]:
-    """Return numbers that are all positive if and only if all eigenvalues of a matrix have negative real parts.
+    """Return expressions that are all positive if and only if all eigenvalues of a matrix have negative real parts.
 
     Examples
     --------

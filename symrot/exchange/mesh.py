@@ -198,7 +198,10 @@ def _degree(node: Any, source: object, unit: Fraction, where: str) -> int:
 
 
 def _integrated(moments: VolumeMoments, node: Any, source: object, unit: Fraction, where: str) -> _Body:
-    """Return the moments of a density (kg, kg m, kg m^2) from the integrals ``moments`` of monomials of coordinates."""
+    """Return mass, first and second moments (kg, kg m, kg m^2) of a mesh body with the density formula ``node``.
+
+    They follow from ``moments``, the integrals of monomials of the coordinates over the mesh.
+    """
     # local coordinates start from a centre and are in the file's unit of length
     axes = {
         name: (generator(name) + constant(middle)) * unit for name, middle in zip("xyz", moments.center, strict=True)

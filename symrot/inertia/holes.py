@@ -24,14 +24,14 @@ from symrot.inertia.tensor import dot
 __all__ = ["DensePart", "PointMass", "dense_part", "doubtful_holes", "pose", "require_points"]
 
 ROUNDING = 1e-9
-"""Length by which a hole may reach out of a part, relative to the radius of the ball around the hole.
+"""Length by which a hole (a part that is subtracted) may reach out of the other parts, relative to the hole's radius.
 
-Dimensions are rounded numbers."""
+The radius is that of a ball around the hole. Rounded dimensions may make an exact fit reach out so little."""
 
 DENSITY = 0.01
 """Largest accepted excess of the density of a hole over that of the parts around it, relative to the parts' density.
 
-Masses are rounded numbers."""
+Users state rounded masses, so that equal densities may differ by so much."""
 
 SHARES = (0.001, 0.25, 0.5, 0.75, 0.999)  # of the coordinates of a hole, at test points
 INWARDS = 1e-6  # share of the way from the end of a hole to its middle, at test points
@@ -42,13 +42,13 @@ PointMass = tuple[Any, Sequence[Any]]  # mass, kg; position in the axes of the b
 
 
 class DensePart(NamedTuple):
-    """A part of a body, for the test of its holes: its shape, position and density, and whether it is subtracted."""
+    """A part of a body, as the tests of holes need it: shape, position, density, and whether the part is a hole."""
 
     solid: hulls.Solid3
     exact_dimensions: Mapping[str, Any]
     # kg/m^3, kg/m^2 or kg/m: a number, or a polynomial in x, y, z
     density: Fraction | Node
-    subtract: bool
+    subtract: bool  # whether the part is a hole
 
     @property
     def kind(self) -> str:
@@ -127,7 +127,7 @@ def doubtful_holes(parts: Sequence[DensePart | None], names: Sequence[str]) -> t
 
 
 def _is_within(hole: DensePart, near: Sequence[DensePart], radius: float) -> bool:
-    """Return whether the density of the body is proven to be nowhere negative in a hole.
+    """Return whether it is proven that the body has no negative density in a hole (a part that is subtracted).
 
     ``near`` are the other parts that may touch the hole; ``radius`` is that of a ball around the hole, m. The hole is
     tested as a whole, then in pieces (:func:`_pieces`).
@@ -182,9 +182,10 @@ def _crosses(plane: tuple[Vec, float], points: Sequence[Vec], rounding: float) -
 
 
 def _carry(parts: Sequence[DensePart], holes: Sequence[DensePart]) -> bool:
-    """Return whether the sum of the densities of ``parts``, which overlap, is at least the sum of those of ``holes``.
+    """Return whether the densities of ``parts`` certainly add up to at least the sum of the densities of ``holes``.
 
-    One per cent less is allowed (:data:`DENSITY`).
+    All of them overlap; one per cent less is allowed (:data:`DENSITY`). A part whose density is a polynomial counts
+    only for a single hole with the same polynomial and position.
     """
     filled = sum(part.density for part in parts if isinstance(part.density, Fraction))
     emptied = Fraction(0)
@@ -202,7 +203,10 @@ _CUT = {
     "hollow_cylinder": (("length", 2),),
     "triangular_prism": (("length", 2),),
 }
-"""Shape that planes cut into shapes of its own kind -> the dimensions that are cut, each with its axis 0, 1 or 2."""
+"""Shape of a hole -> pairs (name of a dimension, its axis 0, 1 or 2) along which the hole may be cut into pieces.
+
+Planes normal to these axes cut a box into boxes, and a cylinder into cylinders.
+"""
 
 
 def _pieces(hole: hulls.Solid3, hosts: Sequence[hulls.Solid3]) -> list[hulls.Solid3]:

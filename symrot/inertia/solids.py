@@ -108,7 +108,7 @@ class Solid:
 
     @property
     def shape(self) -> Shape:
-        """The row of the table of shapes for this body: its dimensions, map, limits and axes."""
+        """The row of the table of shapes for this body: dimensions, axes, and the map from coordinates to positions."""
         return SHAPES[self.name]
 
     @property

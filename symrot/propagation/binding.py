@@ -1,8 +1,8 @@
 """Numerical values of the parameters of kernels, for many initial states of one scene.
 
 A kernel is the generated code for the rates (time derivatives) of the states or for the output quantities. Its
-parameters are formulas such as ``(B - C)/A``. Only those that contain a number of the initial state are evaluated
-again for another state.
+parameters are formulas such as ``(B - C)/A``. For another state, only formulas that contain a number of the initial
+state are evaluated again.
 """
 
 from collections.abc import Callable, Mapping

@@ -365,7 +365,8 @@ class Trajectory(MotionSamples):
             raise InputError(f"t0, t1: expected finite times in s, got {number.show(t0)} and {number.show(t1)}")
         if (self.has_external_torque and self.scene.table is None) or self._propagator is None:
             raise InputError(
-                "transition: expected torques of the scene, formulas or a table, got a motion under the argument torque"
+                "transition: expected a motion under torques of the scene (formulas or a table), got one under the "
+                "argument torque"
             )
         # variational Taylor series, for every method, also for closed forms
         return self._propagator.transition(self.scene, times[0], times[1])

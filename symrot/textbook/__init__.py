@@ -30,9 +30,10 @@ LINE_KINDS = {
     "label": "the label of a figure, a heading, or a number of an equation that was extracted without its formula",
     "other": "the title of another document",
 }
-"""Kind of a line that states no formula of its own -> its description.
+"""Kind of a line of a document that has a relation sign (such as =) but states no new formula -> its description.
 
-Lines of the first four kinds belong to a claim: their ``claim`` is the name of the claim that states the formula."""
+A line of the kind operators, letters, repeats or input belongs to a claim: its attribute ``claim`` is the name of the
+claim that states the formula."""
 
 
 class Document(NamedTuple):

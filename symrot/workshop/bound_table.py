@@ -48,7 +48,10 @@ def library_tasks() -> dict[str, BoundTask]:
 
 
 def table_faults() -> list[str]:
-    """Return the faults of the table of bounds, one sentence each; an empty list if it is complete and up to date."""
+    """Return the faults of symrot's table of rounding-error bounds, one sentence each.
+
+    The list is empty if the table is complete and up to date.
+    """
     required, known = library_tasks(), table()["bounds"]
     faults = [] if table()["method"] == method() else ["the table was computed by earlier source files"]
     if lacking := len(set(required) - set(known)):

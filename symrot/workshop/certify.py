@@ -327,9 +327,11 @@ def all_lines(certificates: Mapping[str, Data]) -> list[str]:
 
 
 def refuted(certificates: Iterable[Data]) -> bool:
-    """Return whether the object-code section of a certificate lacks the proof that the code computes the C text's bits.
+    """Return whether the object-code section of a certificate lacks the proof that code and C text compute the same
+    bits.
 
-    False if no certificate has such a section. Only code compiled with flags that preserve every bit counts.
+    The proof needs code compiled with flags that preserve every bit; other code is ignored. The result is False if no
+    certificate has such a section.
     """
     # without any such code the proof is missing
     return any(data.get("objects") and not object_code.holds(data["objects"]) for data in certificates)

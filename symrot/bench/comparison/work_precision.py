@@ -124,7 +124,10 @@ def digest(problem: Problem) -> str:
 def _entries(
     problem: Problem, contestants: Sequence[Contestant], effort: Effort, exact: Sequence[State], say: Progress
 ) -> tuple[list[Entry], list[dict[str, str]]]:
-    """Return one entry with its error for each method and tolerance, and the skipped methods with reasons."""
+    """Return (entries, skipped): an entry with error and steps for each method and tolerance, and the methods left out.
+
+    A dict in ``skipped`` has a method's name (``method``) and the reason (``why``) for all or some of its tolerances.
+    """
     entries: list[Entry] = []
     skipped = []
     for contestant in contestants:

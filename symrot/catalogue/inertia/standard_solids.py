@@ -132,7 +132,7 @@ def _center_cell(body: Solid) -> str:
 
 
 def _moment_cells(tensor: Matrix) -> list[str]:
-    """Return the three moments of an inertia tensor as LaTeX; a moment equal to an earlier one names that one."""
+    """Return the three moments of an inertia tensor as LaTeX; for a moment equal to I_xx, for instance, ``= I_xx``."""
     moments = [tensor[i, i].factor() for i in range(3)]
     cells = []
     for i, moment in enumerate(moments):
@@ -163,7 +163,7 @@ def _claim(prefix: str, claim: str) -> str:
 def _measure(d: Derivation, body: Solid, prefix: str = "") -> list[Step]:
     """Add and return two steps: the Jacobian of the map from coordinates to points of a body, and the body's measure.
 
-    The measure is the volume, area or length; ``prefix`` begins the claims of these steps.
+    The measure is the volume, area or length. The sentence that each step states begins with ``prefix``.
     """
     coordinates = [variable for variable, _, _ in body.limits]
     letter = MEASURE[body.shape.kind]

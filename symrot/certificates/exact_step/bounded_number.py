@@ -23,7 +23,8 @@ _GROW = 1 + 2.0**-40  # more than the rounding errors of a computed bound
 class UndecidedError(Exception):
     """Raised for a decision of the C program, such as a comparison, that may differ between inputs of the box.
 
-    Code that bounds errors then divides the box. It is also raised where no bound is known, such as near 0 for an agm.
+    Code that bounds errors then divides the box. The exception is also raised where no bound is known, such as near 0
+    for an arithmetic-geometric mean.
     """
 
 

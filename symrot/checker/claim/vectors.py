@@ -165,8 +165,9 @@ def used_vectors(sides: Sequence[Node], names: Mapping[str, bool]) -> tuple[Vect
 
 
 def _axes(name: str, used: Collection[str]) -> str:
-    """Return the endings of the names of a vector's components: "123" if ``used`` has ``a_1``, four digits for a
-    quaternion, otherwise usually "xyz".
+    """Return the endings of the names of a vector's components: "123" if the names ``used`` contain ``a_1``.
+
+    They are "0123" or "1234" for a quaternion, and otherwise usually "xyz".
     """
     numbers = [n for n in "01234" if f"{name}_{n}" in used or (n in "04" and f"{name}{n}" in used)]
     if {"0", "4"} & {*numbers} and {"1", "2", "3"} & {*numbers}:

@@ -60,7 +60,7 @@ def frame_of(name: str) -> str:
 
 
 OF_BODY_AXES = ("principal axes", "in the body", "Euler's equations", "rotation of a symmetric body")
-"""Phrases in the names of derived formulas; a formula with one of them is for components along axes of the body."""
+"""Phrases in the names of derived formulas: a formula whose name has one is for components along axes of the body."""
 
 
 def _axes_of(name: str) -> str:

@@ -19,7 +19,7 @@ __all__ = ["NO_CONTEXT", "Context", "Meaning", "letters_of", "matrix_of", "name_
 _OF_AXES = re.compile(
     r"\b(about|through|perpendicular|normal|parallel|vertical|horizontal|edge|tangent|diameter|plane|inclined)\b"
 )
-"""Words that say where an axis is."""
+"""Pattern of the words that say where an axis is, such as "about" and "diameter"."""
 
 
 def matrix_of(name: str) -> str:

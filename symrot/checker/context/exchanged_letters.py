@@ -1,4 +1,4 @@
-"""Formulas in which two letters are exchanged: the context of a claim says what each of them means."""
+"""Claims that are right after two letters are exchanged, where the context of the claim says what both letters mean."""
 
 from collections.abc import Callable
 from dataclasses import replace

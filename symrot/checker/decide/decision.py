@@ -69,7 +69,7 @@ def decide_equation(equation: Equation) -> Decision:
 
 
 def _with_letters_for_sums(equation: Equation, decision: Decision) -> Decision:
-    """Return "true" if an equation is proven after long sums inside functions were replaced by letters.
+    """Return the decision "true" if an equation is proven with letters in place of long sums inside functions.
 
     For instance, ``sin(a + b + c + d + e)`` becomes ``sin(s)``. Return ``decision`` if there is no such proof, if the
     proof needs conditions, and for an equation with further conditions, such as hypotheses or divisors in its text.

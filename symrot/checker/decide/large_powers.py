@@ -63,8 +63,7 @@ def _size(formula: Expr) -> int:
 
 
 def _base_multiples(formulas: Sequence[Expr]) -> Mapping[Expr, Fraction]:
-    """Return, for each quantity in arguments of functions, the largest number of which all its coefficients are
-    multiples.
+    """Return {x: b}, where b is the greatest common divisor of the coefficients of x in the arguments of functions.
 
     The formulas sin(x/2) and sin(3*x) give {x: 1/2}.
     """

@@ -211,7 +211,7 @@ class _Drawing:
         return self._solve(lambda slope: slope.is_ground)
 
     def fraction(self) -> bool:
-        """Solve an equation that is linear in an unknown for it, as ``y*x + z = 1`` for x.
+        """Solve an equation for an unknown in which it is linear, as ``y*x + z = 1`` for x.
 
         Return whether there was such an equation.
         """

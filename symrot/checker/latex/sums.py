@@ -46,7 +46,7 @@ QUATERNION_SIGNS = ("\\otimes", "\\circ", "\\odot")
 """LaTeX commands for operators that mean the product of quaternions, as in ``p \\otimes q``."""
 
 QUATERNION_LETTERS = ("q", "p", "Q", "P")
-"""Letters that are usually quaternions."""
+"""Letters that usually denote quaternions."""
 
 ENDS = frozenset([
     "", "+", "-", ")", "]", "\\}", "}", "&", "\\\\", ",", ";", "\\end", "\\cdot", "\\times", "*", "/", "^", "_", "'",

@@ -1,4 +1,4 @@
-"""Auxiliary states ("companions") of a Taylor series: quantities of the attitude that have equations of their own.
+"""Auxiliary states ("companions") for Taylor series: functions of the attitude that are integrated like states.
 
 The components of a fixed direction seen from the body, ``gamma = R(q)^T e``, contain products of q0..q3, which take
 convolutions. But ``gamma' = gamma x omega``, so gamma can be integrated like a state. At the start of every step it is
@@ -57,7 +57,7 @@ def _times(a: Polynomial, b: Polynomial) -> Polynomial:
 
 
 class _Closure:
-    """A Taylor system and the auxiliary states that replace functions of the attitude in its rates."""
+    """A Taylor system with the auxiliary states (additional states) that replace polynomials in q0..q3 in its rates."""
 
     def __init__(self, system: Recurrences) -> None:
         self.system, self.series = system, system.series
@@ -206,9 +206,10 @@ class _Closure:
     # -------------------------------------------------------------------------------------------- closing
 
     def adjoin(self, inner: Polynomial) -> tuple[int | None, Fraction, Fraction]:
-        """Return (index, factor, number) such that ``inner`` is ``factor*state + number`` with an auxiliary state.
+        """Return (index, factor, number) such that the polynomial ``inner`` is ``factor*state + number``.
 
-        The index is that of the auxiliary state, which is added if it is new; it is None if ``inner`` is a number.
+        The index is that of the auxiliary state in this formula, which is added if it is new; the index is None if
+        ``inner`` is a number.
         """
         # polynomials that differ only by the identity q0^2 + q1^2 + q2^2 + q3^2 = 1 must give the same state
         degrees = {self.degree(monomial) for monomial in inner.terms}

@@ -16,7 +16,7 @@ __all__ = ["coefficients"]
 
 
 class _Run(NamedTuple):
-    """One computation of Taylor coefficients, with one kind of number."""
+    """The data of one computation of Taylor coefficients with one kind of number, such as Fraction."""
 
     constant: Callable[[Node], Any]
     functions: Mapping[str, Callable[..., Any]]

@@ -184,7 +184,10 @@ class _Jet:
         return f"V_ADD({older}, {newer})" if older and newer else older or newer
 
     def sum(self, s: Series, first: bool, factor: str = "") -> str:
-        """Return the C expression of the sum ``s`` of weighted series, times ``factor`` if it is not empty."""
+        """Return the C expression for coefficient n of the sum ``s`` of weighted series, times ``factor`` (C text).
+
+        ``first`` says whether n is 0; an empty ``factor`` stands for 1.
+        """
         value = ""
         *weights, constant = s.weights
         if first and constant is not None and constant != ZERO:  # coefficient 0
@@ -332,7 +335,7 @@ class _Jet:
         return sorted({s.operands[0] for s in self.series if s.rule == "clock"})
 
     def loops(self) -> list[str]:
-        """Return the C loops that add up the inner terms of the convolutions for two coefficients: n (even) and n + 1.
+        """Return the C loops that add up terms of all convolutions for two coefficients: n (even) and n + 1.
 
         They set the C variable ``a{i}`` to the terms k = 1 to n - 1 of slot i for coefficient n, and ``b{i}`` to those
         for coefficient n + 1 that contain no coefficient n, which is still unknown.

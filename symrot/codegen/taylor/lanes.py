@@ -95,7 +95,10 @@ def cost(layout: Layout) -> int:
 
 
 def _with_bundles(system: Recurrences) -> Recurrences:
-    """Return a system in which products that occur together in several sums, such as ``a*b - c*d``, form one sum."""
+    """Return a system in which products that occur together in several sums are added up once, as one more series.
+
+    If ``a*b - c*d`` occurs in two sums, it becomes a series that both sums contain.
+    """
     series = list(system.series)
     sums = [(i, s) for i, s in enumerate(series) if s.rule == "sum"]
     sums += [(-1 - i, rate) for i, rate in enumerate(system.rates)]

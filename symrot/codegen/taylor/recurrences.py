@@ -49,7 +49,7 @@ TANGENTS = {"tan": 1, "tanh": -1}  # function -> sign in t w' = (1 + sign w^2) t
 
 
 class Series(NamedTuple):
-    """One series of Taylor coefficients: its rule, its operands, and the constants of the rule."""
+    """One series of Taylor coefficients: the rule that computes it, its operands, and the constants of the rule."""
 
     rule: str  # state time sum product quotient root driven primitive clock, or theta (t u')
     # indices of series; for a function f(u), the last is the argument u

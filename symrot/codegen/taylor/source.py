@@ -85,7 +85,10 @@ def _table(items: Iterable[str]) -> str:
 
 
 def jet_source(layout: Layout, parameters: Sequence[str]) -> str:
-    """Return the C functions ``symrot_constants`` and ``symrot_jet`` (all Taylor coefficients) for a layout."""
+    """Return the C functions ``symrot_constants`` and ``symrot_jet``, which computes the Taylor coefficients.
+
+    ``layout`` says how the series are arranged in SIMD vectors.
+    """
     return _Jet(layout, parameters).text()
 
 
@@ -293,7 +296,7 @@ class _Jet:
         return f"V_SET({', '.join(lanes)})"
 
     def _clock_seed(self, row: Row, name: str) -> list[str]:
-        """Return the C statements that set ``name`` to coefficient 0 of four series, sines and cosines of a t + b."""
+        """Return the C statements that set ``name`` to coefficient 0 of four functions such as sin(a t + b)."""
         series = [self.layout.series[i] for i in row.lanes if i is not None]
         rates = self.constant(tuple(s.weights[0] for s in series))  # type: ignore[misc]
         offsets = self.constant(row.constant) if row.constant and set(row.constant) != {ZERO} else ""
@@ -378,7 +381,7 @@ class _Jet:
         return lines
 
     def loops(self) -> list[str]:
-        """Return the C loops that add up the inner terms of the convolutions for two coefficients: n (even) and n + 1.
+        """Return the C loops that add up terms of all convolutions for two coefficients: n (even) and n + 1.
 
         They set the C variable ``a{i}`` to the terms k = 1 to n - 1 of column i for coefficient n, and ``b{i}`` to the
         terms for coefficient n + 1 that contain no coefficient n, which is still unknown.

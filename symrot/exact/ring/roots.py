@@ -30,7 +30,7 @@ __all__ = [
 ]
 
 MOST_TERMS = 4000
-"""Largest number of terms of the radicand of a root, which is ``P Q^(n-1)`` for a root of P/Q."""
+"""Largest number of terms of a radicand, which is ``P Q^(n-1)`` for the n-th root of a fraction P/Q."""
 
 MOST_BITS_FACTORED, LARGEST_DIVISOR = 64, 2**15
 """Largest number of bits of a number that is factored completely; in longer numbers, only divisors below
@@ -77,9 +77,10 @@ class Radicand:
 
 @dataclass(frozen=True)
 class Radical:
-    """A fractional power in factors: ``rational * product(roots) / below``, times ``f^n`` for (f, n) in ``outside``.
+    """A fractional power in factors: ``(rational * product(roots) / below * product(f^n))^power``.
 
-    All of this is raised to ``power``. ``sqrt(4 x^2 y)`` has rational 2, the root sqrt(y) and the pair (``|x|``, 1).
+    The pairs (f, n) are in ``outside``. ``sqrt(4 x^2 y)^3`` has rational 2, the root sqrt(y), the pair (``|x|``, 1) and
+    power 3.
     """
 
     base: Expr
@@ -101,7 +102,7 @@ class Radical:
 
     @property
     def parts(self) -> tuple[Expr, ...]:
-        """The formulas inside this power, such as radicands, whose own symbols and roots the ring needs too."""
+        """The formulas inside this power, such as radicands: the ring also needs the symbols and roots in them."""
         insides = [root.power_expression for root in self.generators]
         return (self.rational, self.below, *insides, *(f for f, _ in self.outside if not isinstance(f, Root)))
 

@@ -23,9 +23,10 @@ def equation(step: Step) -> str:
 
 
 def repetitions(page: Page) -> frozenset[int]:
-    """Return the numbers of the steps that repeat claim and reason of an earlier step, if at least MANY steps do.
+    """Return the numbers of the steps that repeat the claim and the reason of an earlier step.
 
-    Formulas and sequences of axes such as ZXZ may differ in claims that count as equal.
+    Only claims and reasons that at least MANY steps share are looked for. Claims count as equal if they differ only in
+    formulas and sequences of axes such as ZXZ; reasons must be the same.
     """
     places: dict[tuple[str, str], list[int]] = {}
     for number, step in enumerate(page.steps, page.first):

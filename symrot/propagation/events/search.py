@@ -235,9 +235,9 @@ def _zeros_at(searcher: _Search, events: Iterable[int], t: float, y: Sequence[fl
 
 
 def _open_doubts(doubts: list[tuple[int, float]], zeros: list[EventZero], t0: float) -> list[tuple[int, float]]:
-    """Return the ``doubts``, pairs (event, time) of extrema near zero, each once and without those listed as zeros.
+    """Return the ``doubts``, each once, without those that are also listed as zeros.
 
-    A doubt is an extremum so close to zero that the error of the motion matters.
+    A doubt is a pair (event, time) of an extremum so close to zero that the error of the motion matters.
     """
     settled: dict[int, list[float]] = {}
     for zero in zeros:

@@ -41,8 +41,8 @@ def rests_at_corner(
 ) -> bool:
     """Return whether a motion stays where its rates have no derivatives by states or parameters.
 
-    This is examined at n arbitrary times. A motion that only passes such a point does so at a single time, which the
-    arbitrary times miss.
+    The rates are examined at n arbitrary times. A motion that only passes a point without derivatives is there at a
+    single time, which the arbitrary times miss.
 
     Parameters
     ----------

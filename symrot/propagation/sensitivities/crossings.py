@@ -68,10 +68,10 @@ class Crossings:
         self._last: tuple[Interval, Instant, dict[str, Flip], bool] | None = None  # the last jump of the rates
 
     def across(self, before: Interval, after: Interval, by: Floats) -> Floats:
-        """Return the derivatives of the states after a switch between two intervals; ``by`` are those before, (7, m).
+        """Return the derivatives of the states after a switch between two intervals, shape (7, m).
 
-        The derivatives of the time of the switch are appended to :attr:`switchings`. Raise PropagationError if the
-        derivatives after the switch do not exist.
+        ``by`` has the derivatives before the switch. The derivatives of the time of the switch are appended to
+        :attr:`switchings`. Raise PropagationError if the derivatives after the switch do not exist.
         """
         guards = self.guards
         changed = [
@@ -109,7 +109,7 @@ class Crossings:
             rows[mode] = np.full(len(by.T), np.nan) if grazes else 0.0 - guard.change(by) / speed
         if not jumps and float(np.abs(later - f).max()) > STEEP * float(np.abs([f, later]).max()):
             names_of = " and ".join(map(guards.name, [*changed, *sorted(held), *released]))
-            raise guards.refusal(before.end, f"the torque jumps where no argument is zero in {names_of}")
+            raise guards.refusal(before.end, f"the torque jumps although no argument of {names_of} is zero")
         first = next(iter(jumps), None)
         if first is not None:
             flips = {mode: Flip(after.modes[mode], rows[mode], jumps[mode].states) for mode in jumps}

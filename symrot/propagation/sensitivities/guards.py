@@ -58,7 +58,10 @@ class Gradient(NamedTuple):
         return abs(self.time) + float(np.abs(self.states) @ np.abs(rates))
 
     def change(self, slopes_of_states: Floats) -> Floats:
-        """Return the m derivatives of the formula by the variables at fixed time, from those of the states, (7, m)."""
+        """Return the m total derivatives of the formula by the variables, on which the states depend, too.
+
+        ``slopes_of_states`` has the derivatives of the states, shape (7, m); the time is fixed.
+        """
         return np.asarray(self.states @ slopes_of_states + self.variables)
 
 
@@ -121,9 +124,10 @@ class Guards:
         return is_continuous(self._by_name[mode])
 
     def twins(self, mode: str) -> list[tuple[str, int]]:
-        """Return the functions that switch together with ``mode``, as pairs (mode, 1 or -1), with ``mode`` itself.
+        """Return the functions that switch together with the function of ``mode``, as pairs (mode, 1 or -1).
 
-        A mode is the number that stands for a function such as sign(x); 1 or -1 is its sign relative to the first pair.
+        A mode is the number that stands for a function such as sign(x). The list includes the pair of ``mode`` itself;
+        1 or -1 is the sign of the argument relative to the argument of the first pair.
         """
         return self.system.twins.get(mode, [(mode, 1)])
 
@@ -160,7 +164,7 @@ class Guards:
         return {name: value for name, (value,) in self._slopes[key].items()}, self._slopes[(*key, "by")]
 
     def _duals(self, parameters: Parameters, interval: Interval, t: float, y: Floats, kind: str) -> dict[str, Any]:
-        """Return the inputs of formulas as dual numbers, by name; the derivatives are by time, states and variables."""
+        """Return the inputs of formulas, name -> dual number, with derivatives by time, states and variables."""
         values, rows = self.bound(parameters, interval, kind)
         inputs: dict[str, Any] = {name: float(mode) for name, mode in interval.modes.items()}
         for name, value in values.items():
@@ -178,7 +182,7 @@ class Guards:
     def guard(self, interval: Interval, mode: str, t: float, y: Floats) -> Gradient:
         """Return the argument of the function (sign, abs, ..) for which ``mode`` stands, with its derivatives.
 
-        For floor(x) it is x minus the present floor.
+        For floor(x) the result is x minus the present floor.
         """
         inputs = self._duals(interval.regime.parameters, interval, t, y, "guards")
         return self._gradient(evaluate(interval.regime.formulas[mode], inputs, DUALS, float))
@@ -186,7 +190,7 @@ class Guards:
     def held_mode(self, interval: Interval, mode: str) -> Gradient:
         """Return the value of a sign(x) whose x is held at zero, at the end of an interval, with its derivatives.
 
-        It lies between -1 and 1 and keeps x at zero; ``mode`` is its name.
+        The value lies between -1 and 1 and keeps x at zero; ``mode`` is its name in formulas.
         """
         quantities, parameters = interval.regime.quantities, interval.regime.quantity_parameters
         inputs = self._duals(parameters, interval, interval.stop, interval.last, "quantities")

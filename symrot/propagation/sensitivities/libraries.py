@@ -36,9 +36,9 @@ TOLERANCE = 1e-16
 
 
 def rates_of(plan: Plan) -> tuple[Program, Parameters]:
-    """Return the rates (time derivatives of the states) in the equations of a plan as a program, with their parameters.
+    """Return the rates (time derivatives of the states) in the equations of a scene's plan, as a program.
 
-    A parameter is a pair (name, formula).
+    The second result has the parameters of the program, pairs (name, formula).
     """
     key = f"rates alone\n{kernel_key(plan)}"
     # a clock counts time from an epoch, which is a further constant in the formulas
@@ -181,6 +181,6 @@ class MotionLibrary:
             except PropagationError:
                 raise error from None
             if rests_at_corner(self._rates, self._depends, p, between, samples[len(times) :]):
-                reason = "the torque has no derivatives there, where a root such as |omega| stays at zero"
+                reason = "the torque is not differentiable there, since a square root such as |omega| stays at zero"
                 raise IntegrationStopped(begin, reason) from None
         return samples[: len(times)]

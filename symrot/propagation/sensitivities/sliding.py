@@ -1,4 +1,4 @@
-"""Guards that stay at zero: those that a sliding motion holds there, and those that rest at zero by chance.
+"""Guards that stay at zero, because a sliding motion holds them there or because they rest there by chance.
 
 A *guard* is the argument of a switching function (sign, abs, ..); its *mode* is the number that replaces the function
 in formulas. A guard is *held* if the equations determine the mode by the condition that the guard stays at zero.
@@ -79,9 +79,9 @@ def rests(guards: Guards, interval: Interval, mode: str) -> bool:
 
 
 def _is_smooth_at(guards: Guards, interval: Interval, mode: str) -> bool:
-    """Return whether the rates and their derivatives are the same for both signs of an argument that stays at zero.
+    """Return whether the rates and their derivatives are the same for both signs of a guard that stays at zero.
 
-    It is the argument of the function (sign, abs, ..) for which ``mode`` stands.
+    The guard is the argument of the function (sign, abs, ..) for which ``mode`` stands.
     """
     twins = [twin for twin, _ in guards.twins(mode)]
     for t, y in interval.places():
@@ -111,4 +111,6 @@ def require_one_surface(guards: Guards, interval: Interval, mode: str, t: float,
         other = guards.guard(interval, twin, t, y)
         row = np.array([other.time, *other.states, *other.variables])
         if np.abs(own * (row @ own) - row * (own @ own)).max() > ALIKE * (own @ own) * np.abs(row).max():
-            raise guards.refusal(interval.zero.after(t), f"{guards.name(mode)} and {guards.name(twin)} switch at once")
+            raise guards.refusal(
+                interval.zero.after(t), f"{guards.name(mode)} and {guards.name(twin)} switch at the same time"
+            )

@@ -57,7 +57,7 @@ def from_start(guards: Guards, interval: Interval, by: Floats) -> Floats:
     size = ALIKE * max(float(np.abs(rates).max()) for rates in corners.values())
     for signs, rates in corners.items():
         if np.abs(first + jumps @ (np.array(signs) - 1.0) - rates).max() > size:
-            raise guards.refusal(interval.begin, f"{' and '.join(map(guards.name, held))} switch at once")
+            raise guards.refusal(interval.begin, f"{' and '.join(map(guards.name, held))} switch at the same time")
     return np.asarray(
         by - jumps @ np.linalg.solve(np.array([gradient.states for gradient in gradients]) @ jumps, changes)
     )
@@ -81,6 +81,6 @@ def _require_constant(guards: Guards, interval: Interval, mode: str, other: int,
     if not np.array_equal(beyond, f):
         raise guards.refusal(
             interval.begin,
-            f"the motion starts where {guards.name(mode)} switches, and a change of {variable} to one side or to "
-            "the other has different effects",
+            f"the motion starts where {guards.name(mode)} switches, so that a larger and a smaller {variable} have "
+            "different effects; start it slightly to one side",
         )

@@ -96,7 +96,9 @@ class Variable:
 def require_formulas(scene: Scene) -> None:
     """Raise InputError if a torque of a scene is given by samples, which have no derivatives."""
     if scene.table is not None:
-        raise InputError(f"{scene.name}: expected torques with formulas for sensitivities, got a torque of kind table")
+        raise InputError(
+            f"{scene.name}: expected torques with formulas, which sensitivities need, got a torque of kind table"
+        )
 
 
 def read_variables(scene: Scene, keys: Sequence[str]) -> list[Variable]:
@@ -199,9 +201,10 @@ Numbers = Mapping[str, Fraction]
 
 
 def difference(scene: Scene, variable: Variable, numbers: Callable[[Scene], Numbers]) -> dict[str, Fraction]:
-    """Return the derivatives, by one variable, of those exact numbers of a scene that depend on it.
+    """Return the derivatives of exact numbers of a scene by one variable, as a map from name to derivative.
 
-    For the mass of a unit sphere and its moments of inertia: ``{"I_xx": Fraction(2, 5), ..}``.
+    Numbers that do not depend on the variable are left out. For the mass of a unit sphere and its moments of inertia:
+    ``{"I_xx": Fraction(2, 5), ..}``.
 
     Parameters
     ----------

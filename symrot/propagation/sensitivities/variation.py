@@ -65,7 +65,8 @@ TRIES = 4
 class Column:
     """The dependence of a scene on one variable, an initial value or a constant.
 
-    ``start`` has the derivatives of the initial state by it, ``constants`` those of the constants of the equations.
+    ``start`` has the derivatives of the initial state by the variable, ``constants`` the derivatives of the constants
+    in the equations.
     """
 
     def __init__(self, scene: Scene, variable: Variable, general: Structure) -> None:
@@ -219,7 +220,7 @@ class SmoothEquations:
         return self._parts, 0.0
 
     def _parts_from(self, epoch: float) -> "list[_Part]":
-        """Return the equations with time counted from an epoch, s; those for the last epoch are used again."""
+        """Return the equations with time counted from an epoch, s; the equations for the last epoch are used again."""
         if epoch != self._moved[0]:
             self._moved = (epoch, _parts(self.scene, self._columns, epoch))
         return self._moved[1]

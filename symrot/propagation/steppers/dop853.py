@@ -44,8 +44,7 @@ MIDDLE_REACH = 3  # index of the first disc to try in symrot.codegen.enclosure.t
 Clock = Callable[[float], tuple[PathLike, Sequence[float]]]
 """Function that takes an epoch, s, and returns a kernel's library and the values of its parameters for this epoch.
 
-The rates of this kernel take the time since the epoch.
-"""
+With these values the rates of the kernel count time from the epoch."""
 
 FAR = 1e4  # steps from the epoch: farther on, the time would be rounded to more than 1e-12 of a step
 WINDOW = 2048

@@ -185,7 +185,7 @@ class Stepper(ABC):
 
     @abstractmethod
     def enter(self, run: Run, segment: Segment, allowed: float) -> None:
-        """Prepare a run for a segment: set those fields of its C struct that only this stepper uses."""
+        """Prepare a run for a segment: set the fields of its C struct that only this stepper uses."""
 
     @staticmethod
     @abstractmethod

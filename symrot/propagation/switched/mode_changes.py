@@ -108,9 +108,9 @@ class ModeChanges(Guards):
         )
 
     def _no_longer_held(self) -> None:
-        """Release an x in sign(x) that does not stay at zero any more, because another function has switched.
+        """Release a held function sign(x) if x does not stay at zero any more, because another function has switched.
 
-        Raise IntegrationStopped if there is no such x: the continuation of the motion is then not unique.
+        Raise IntegrationStopped if no function is released: the continuation of the motion is then not unique.
         """
         released = self._released_by_another(solvable=False)
         if released is None:
@@ -234,7 +234,11 @@ class ModeChanges(Guards):
     def _is_rounding(
         self, regime: Regime, guard: Guard, piece: Piece, states: Callable[[Floats], Floats]
     ) -> bool:  # fmt: skip
-        """Return whether a guard (argument of sign, ..) is negative at the start of ``piece`` only by rounding."""
+        """Return whether a guard is negative at the start of ``piece``, a part of the motion, only by rounding.
+
+        A guard is a formula that turns negative where a function (sign, floor, ..) switches; its function has just
+        switched.
+        """
         # the guard is zero there, because its function has just switched
         if guard.mode in self.held or not self.flipped.get(guard.mode):
             return False
@@ -247,12 +251,12 @@ class ModeChanges(Guards):
         return not self._jumped(guard.mode) and self._rises(regime, guard, piece, states)
 
     def _asleep(self) -> set[str]:
-        """Return the names of the switching functions without effect now: those in unused branches of ``where``."""
+        """Return the names of the switching functions in branches of ``where`` that have no effect now."""
         # such as the sign in where(omega_1 > 0, sign(omega_2), 0) while omega_1 < 0
         return {s.mode for s in self.system.switches if s.where and not hold(s.where, self.modes, self.held)}
 
     def _wake(self, mode: str) -> None:
-        """Set the ``mode`` of a function such as sign(x) to the present value of the function."""
+        """Set the value of the function with the mode ``mode``, such as sign(x), to its present value."""
         # the motion begins to use the branch of where(..) with this function, whose changes were not followed before
         try:
             guard = self._guard_value(mode)

@@ -188,7 +188,7 @@ class Regime:
         return [float(quantities[name]) for name in names]
 
     def _inputs(self, modes: Modes, zero: Instant, y: Floats) -> dict[str, float]:
-        """Return the inputs of the output quantities, by name: the states ``y`` and the parameters of the formulas."""
+        """Return a map from the names of all inputs of the output quantities to values: states ``y`` and parameters."""
         numbers = self._parameters_under(modes).quantities.parameters(zero.exact)
         values = zip((name for name, _ in self.quantity_parameters), numbers, strict=True)
         return dict((*values, *zip(self.plan.states, y.tolist(), strict=True)))

@@ -29,7 +29,7 @@ CONTINUOUS = ("abs(", "max(", "min(", "clip(", "sqrt(")  # first characters of l
 
 
 class SwitchedSystem:
-    """All switching functions (sign, abs, ..) in the torques of a plan, and the smooth motions between switches."""
+    """All switching functions (sign, abs, ..) in the torques of a scene, and the smooth motions between switches."""
 
     def __init__(self, plan: Plan, choice: Choice, tolerance: float) -> None:
         # Numbers replace the functions between switches. While the motion slides, the arguments of some functions stay
@@ -39,7 +39,7 @@ class SwitchedSystem:
 
     @cached_property
     def switches(self) -> list[Switch]:
-        """The switching functions (sign, abs, ..) of all torques, each with its argument and its mode."""
+        """The switching functions (sign, abs, ..) of all torques, each with its argument and the name of its value."""
         # the mode, a constant of the plan, is the number that replaces the function in the formulas
         return [switch for switches in self._switches_by_torque for switch in switches]
 
@@ -123,7 +123,10 @@ class SwitchedSystem:
         return self._modes_at_start({})
 
     def beside_start(self, mode: str, sign: int) -> Modes:
-        """Return the values of all functions (sign, abs, ..) just after the start, if that of ``mode`` is ``sign``."""
+        """Return the values of all functions (sign, abs, ..) just after the start, if ``mode`` is ``sign``.
+
+        A mode is the number that replaces a function in formulas.
+        """
         # functions that contain this one, such as floor(sign(x) + y), differ for 1 and -1
         return self._modes_at_start({mode: sign})[0]
 
@@ -171,7 +174,7 @@ class SwitchedSystem:
                     if names(switch.guard) & (held | tied.keys()):
                         raise InputError(
                             f"torque: the motion slides along the jump of a function inside {switch.label}, which has "
-                            "no value there; write the torque without functions with a jump inside other ones"
+                            "no value there; write the torque without a function with a jump inside another function"
                         )
                 own = on_own_clock(plan, self.choice, self.tolerance)
                 self._regime_of[content] = Regime(self.constants, self.switches, own, held, switches)
@@ -193,7 +196,7 @@ class SwitchedSystem:
 
 
 def _switches(torque: FormulaTorque) -> list[Switch]:
-    """Return the switching functions (sign, abs, ..) of a torque, each with the name of its mode in the plan.
+    """Return the switching functions (sign, abs, ..) of a torque, each with the name of its mode in the equations.
 
     The mode is the number that replaces the function in formulas; its name begins with the prefix of the torque, such
     as ``torque2_``.

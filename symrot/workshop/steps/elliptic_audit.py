@@ -97,8 +97,8 @@ def _box(path: Path, data: Data) -> dict[str, tuple[Fraction, Fraction]]:
 def _bounds(path: Path, step: ExactStepText, data: Data) -> Data:
     """Return the section ``bounds`` as symrot prints it, with the numbers that the certificate states.
 
-    CertificateError is raised unless these numbers agree, but for the factor ``NEAR``, with the bounds that symrot
-    computes on the same box.
+    CertificateError is raised if one of these numbers differs by more than the factor ``NEAR`` from the bound that
+    symrot computes on the same box.
     """
     box = _box(path, data)
     stated = {kind: _numbers(path, data["bounds"], kind) for kind in ("rounding", "truncation")}

@@ -48,7 +48,7 @@ Motions = Callable[[Sequence[Fraction], Sequence[Fraction]], Any]
 # The parameters p are those of the closed form: moments of inertia, and pull (weight times the distance of the centre
 # of mass, in N m).
 class _Form(NamedTuple):
-    """The parts of a step's C text that differ between closed forms, such as the free body and the heavy top."""
+    """What the C text of a time step contains for one kind of closed form: the free body or the heavy top."""
 
     library: str
     title: str

@@ -54,8 +54,9 @@ CONJUGATE = re.compile("p_?(phi|varphi|theta|vartheta|psi)")
 
 
 def substitutions_of_tops(context: Context, sides: Sequence[Expr]) -> Iterator[Substitution]:
-    """Yield each Substitution for a claim about a symmetric top: spin and momenta become formulas in angles and
-    rates.
+    """Yield the possible meanings of the letters of a claim about a symmetric top, as Substitutions.
+
+    Each Substitution replaces spin and momenta by formulas in the angles of the top and their rates.
     """
     if context.body is not None and context.body.kind.formulas != TOPS:
         return
