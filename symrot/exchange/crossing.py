@@ -273,7 +273,10 @@ def _windings(corners: Floats, points: Floats) -> Floats:
 
 
 def interior_points(surface: Surface) -> Floats:
-    """Return points of a lattice that are inside a surface, shape (n, 3); for many triangles, a coarser lattice."""
+    """Return points of a lattice that are inside a surface, shape (n, 3).
+
+    If the surface has many triangles, only some points of the lattice are tested.
+    """
     lowest, size = surface.vertices.min(axis=0), np.ptp(surface.vertices, axis=0)
     lattice = np.stack(np.meshgrid(*[np.linspace(0, 1, 9)[1:-1]] * 3, indexing="ij"), axis=-1).reshape(-1, 3)
     count = min(len(lattice), MOST_ANGLES // len(surface.triangles))

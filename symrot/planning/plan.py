@@ -205,7 +205,7 @@ def make_plan(
 
 
 def structure_key(scene: Scene, initial: Initial) -> Hashable:
-    """Return a key of an initial state; states with equal keys have equal equations, with other values of constants."""
+    """Return a key of an initial state; with equal keys, the equations of a scene differ only in numbers."""
     # A propagator keeps one prepared motion for each key.
     rotates_about = tuple([x.numerator != 0 for x in initial.omega_b])
     if rotates_about.count(True) > 1:
