@@ -107,7 +107,7 @@ def test_a_claim_ends_after_a_number_of_operations_that_is_the_same_everywhere(m
     monkeypatch.setattr(claim_verdict, "MOST_OPERATIONS", 300)
     verdict = symrot.check(LONG)
     assert verdict.verdict == "undecided"
-    assert verdict.reason == "it needs more than 300 operations; a letter in place of an inner function may help"
+    assert verdict.reason == "it needs more than 300 operations; replacing an inner function by a letter may help"
     monkeypatch.undo()
     assert symrot.check(LONG, repair=False).verdict == "false"
 

@@ -136,7 +136,7 @@ def test_only_the_matrix_that_has_to_be_a_rotation_is_named(claim, condition):
 def test_a_condition_on_a_matrix_says_that_nothing_defines_it():
     verdict = symrot.check("A A^T = A^T A")
     assert verdict.verdict == "definition"
-    assert verdict.reason == "it says something about A, and nothing here says what that is"
+    assert verdict.reason == "the claim is about A, but nothing here says what this is"
 
 
 @pytest.mark.parametrize(("claim", "verdict"), [
