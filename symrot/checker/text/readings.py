@@ -152,7 +152,7 @@ def _on_reading(usual: Reading, reading: Reading, verdict: Verdict, notation: No
     if isinstance(notation, TypedNotation):
         notation = replace(notation, plain=usual.plain or reading.plain)
     changed = _text_of(reading, notation)
-    excerpts = " and ".join(repr(place) for place in dict.fromkeys(places[:3]))
+    excerpts = " and ".join(f"'{' '.join(place.split())}'" for place in dict.fromkeys(places[:3]))
     return f"{excerpts} can be read in two ways: read as {changed}, it is {OUTCOMES[verdict.verdict]}"
 
 

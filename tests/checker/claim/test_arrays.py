@@ -111,7 +111,7 @@ def test_frames_are_parts_of_names_if_there_are_several():
     both = symrot.check(r"{}^A R_B = {}^A R_C \, {}^C R_B")
     assert any("part of the name, R_B_A" in note for note in both.notes)
     one = symrot.check(r"{}^B\omega_x = {}^B\dot\phi")
-    assert any("left out" in note for note in one.notes)
+    assert any("the letter B before a name is read as its frame and ignored" in note for note in one.notes)
 
 
 @pytest.mark.parametrize(("claim", "words"), [
