@@ -68,7 +68,7 @@ def main(arguments: Sequence[str]) -> int:
     groups = [argument for argument in arguments if argument != "--list"] or [*LIMITS]
     lists = {group: claims(group) for group in groups}
     start = min(timed(SHORTEST).seconds for _ in range(STARTS))
-    print(f"{start:.2f} s of processor time for `symrot check {SHORTEST!r}`; more than that, in seconds:")
+    print(f"`symrot check {SHORTEST!r}` takes {start:.2f} s of processor time; time of other claims minus this, s:")
     for group, listed in lists.items():
         rows = [row._replace(seconds=row.seconds - start) for row in map(timed, listed)]
         for row in sorted(rows, key=lambda row: -row.seconds):

@@ -115,14 +115,14 @@ STUDIES: dict[str, str] = {
     "kernels": "emitted kernels against kernels of other tools, in operations and nanoseconds",
     "overhead": "a call from Python against the bare call in C",
     "starts": "times of a call with another initial state, and of ensembles of 10 to 100 000 motions in closed form "
-    "and by steps",
+    "and in steps",
     "stepper": "DOP853 in C against a handwritten DOP853 and SciPy's, at equal tolerance",
     "closed_form": "nanoseconds per sample of closed forms, and the time of their set-up",
-    "long": "errors of energy and attitude after 1e6 revolutions by steps, and the time",
+    "long": "errors of energy and attitude after 1e6 revolutions computed in steps, and the run time",
     "start": "`symrot run` with an empty and with a filled cache",
     "derive": "the time of derivations",
     "check": "`symrot check` on typical claims, on claims that name a formula and on conditional ones",
-    "switches": "motions with switched torques by steps, against closed forms",
+    "switches": "motions with switched torques, computed in steps and compared with closed forms",
     "ulps": "the errors of the functions that kernels call, in units in the last place",
     "comparison.steps": "one emitted time step against the step of other tools, in operations and nanoseconds",
     "comparison.sensitivities": "derivatives of motions against heyoka's variational equations",
@@ -189,7 +189,7 @@ def arguments(parser: ArgumentParser) -> None:
     add(
         "--quick",
         action="store_true",
-        help="run fewer tolerances and repetitions, and heyoka in its default setting only",
+        help="fewer tolerances and repetitions, and heyoka with its default settings only",
     )
     add("--long", action="store_true", help="with --stability: follow 1e6 revolutions instead of 1e5")
     add("--plot", type=Path, metavar="FILE", help="draw time against error: FILE.png, .pdf or .svg")

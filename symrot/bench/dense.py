@@ -65,9 +65,10 @@ def _symrot(problem: Problem, method: str, tolerance: float, times: Floats) -> C
 
 
 def measure(name: str, samples: int, rounds: int) -> list[Measured]:
-    """Time all contestants on the motion ``name``, and return their runs with times and errors.
+    """Compute ``samples`` samples of the motion ``name`` by symrot and by heyoka, and return times and errors.
 
-    Each run computes ``samples`` samples and is timed ``rounds`` times; its number of steps is not counted, and is 0.
+    The result has one entry for each method and tolerance, timed up to ``rounds`` times. The number of steps in an
+    entry is 0, since steps are not counted.
     """
     problem, exact = SteppedProblem(name, 1.0), reference(name)
     times = np.linspace(problem.start, problem.stop, samples)
@@ -102,8 +103,8 @@ def main(arguments: list[str] | None = None) -> None:
             good = [one.median for one in ours if peer and one.error <= peer.error]
             if peer and good:
                 ratios.append(peer.median / min(good))
-                print(f"  {peer.name} at {tolerance:.0e} takes {ratios[-1]:.1f} times as long as symrot's series "
-                      f"with an error of at most {peer.error:.0e}")  # fmt: skip
+                print(f"  {peer.name} at {tolerance:.0e} takes {ratios[-1]:.1f} times as long as the fastest "
+                      f"series of symrot whose error is no larger, at most {peer.error:.0e}")  # fmt: skip
     if ratios:
         print(f"\nheyoka over symrot: median {np.median(ratios):.1f}, least {min(ratios):.1f}")
 

@@ -97,7 +97,10 @@ def _ours(start: Start, tolerances: Sequence[float], orders: Iterable[int] = ())
 
 
 def _batches(integrator: Any, width: int, start: Start) -> EndState:
-    """Return the last states, (n, N), and the steps of an ensemble, by heyoka's integrator for batches of ``width``."""
+    """Integrate an ensemble by heyoka's integrator for batches of ``width`` trajectories.
+
+    Return the states at the end, (n, N), and the number of steps of all trajectories together.
+    """
     states, steps = np.empty_like(start.y), 0
     for first in range(0, len(start.y), width):
         integrator.set_time(0.0)
@@ -109,7 +112,11 @@ def _batches(integrator: Any, width: int, start: Start) -> EndState:
 
 
 def _ensemble(propagate: Any, integrator: Any, width: int, start: Start) -> EndState:
-    """Return the last states, (n, N), and the steps of an ensemble, by heyoka's ensemble function in one thread."""
+    """Integrate an ensemble by heyoka's function ``propagate`` for ensembles, in one thread.
+
+    Return the states at the end, (n, N), and the number of steps of all trajectories together. The ``integrator``
+    computes ``width`` trajectories at once.
+    """
 
     def begin(integrator: Any, i: int) -> Any:
         if width == 1:
@@ -120,7 +127,6 @@ def _ensemble(propagate: Any, integrator: Any, width: int, start: Start) -> EndS
             integrator.state[:] = start.y[i * width : (i + 1) * width].T
         return integrator
 
-    # The integrator computes ``width`` trajectories at once.
     results = propagate(integrator, start.stop, len(start.y) // width, begin, max_workers=1)
     states = np.vstack([one[0].state.T if width > 1 else one[0].state[None] for one in results])
     if width == 1:
@@ -150,9 +156,12 @@ def _heyoka(start: Start, tolerances: Sequence[float], many: bool) -> list[Task]
 
 
 def measure(start: Start, rounds: int, many: bool = False) -> list[Measured]:
-    """Time all contestants on an ensemble, and return their runs with times and errors."""
+    """Compute the trajectories of the ensemble ``start`` by symrot and by heyoka, and return times and errors.
+
+    The result has one entry for each method and tolerance. With ``many``, heyoka's ensemble functions run too.
+    """
     ours, theirs = [10.0 ** (-k / 4) for k in range(4, 57)], [10.0 ** (-k / 2) for k in range(6, 33)]
-    # With ``many``, heyoka's ensemble functions run too, which are made for thousands of trajectories.
+    # heyoka's ensemble functions are made for thousands of trajectories
     return raced([*_ours(start, ours), *_heyoka(start, theirs, many)], start.error, rounds)
 
 
@@ -166,7 +175,7 @@ def _print_table(runs: list[Measured], n: int) -> None:
         longest = min(own, key=lambda run: run.tolerance)
         pace = longest.least / longest.steps * 1e9
         print(f"  {contestant:24}{pace:6.0f} ns per trajectory and step, least error {min(r.error for r in own):.1e}")
-    print(f"{'  error <=':10}{'lanes us':>10}{'heyoka us':>11}{'ratio':>8}   per trajectory; its fastest mode")
+    print(f"{'  error <=':10}{'lanes us':>10}{'heyoka us':>11}{'ratio':>8}   per trajectory; fastest mode of heyoka")
     ratios = []
     for decade in DECADES:
         ours, other = best_of(runs, decade, ["lanes"]), best_of(runs, decade, peers)

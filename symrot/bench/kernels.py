@@ -50,7 +50,7 @@ SHAPES = ("one", "cached", "many")
 
 @dataclass
 class Contestant:
-    """One tool's version of a kernel: its operations, and its times per sample, s, for each of the SHAPES of input."""
+    """A kernel as one tool generates it: its operations, and times per sample, s, for each of the SHAPES of input."""
 
     name: str
     operations: Counter[str]
@@ -79,9 +79,10 @@ def _samples(name: str, count: int) -> list[Floats]:
 
 @cache
 def _block(name: str, shape: str, count: int, place: int) -> tuple[Floats, Floats]:
-    """Return the arrays of inputs and outputs that all contestants share.
+    """Return the arrays (inputs, outputs) of ``count`` samples, which the kernels of all tools read and write.
 
-    A sample is a row of the array, or a column in a batch.
+    A sample is a row of an array for the ``shape`` ``"one"``, and a column for batches. ``place`` numbers several equal
+    pairs of arrays at different places in memory.
     """
     samples = np.concatenate(_samples(name, count))
     size = sum(a.size for a in kernel_program(name).signature.arguments if a.role == "out")
@@ -101,7 +102,7 @@ def _block(name: str, shape: str, count: int, place: int) -> tuple[Floats, Float
 
 
 def _addresses(name: str, shape: str, count: int, place: int) -> Any:
-    """Return the addresses of the kernel's arguments in the shared memory (:func:`_block`)."""
+    """Return a C array with the address of each argument of the kernel ``name`` in the arrays of :func:`_block`."""
     addresses, offsets = [], {"in": 0, "out": 0}
     for argument in kernel_program(name).signature.arguments:
         block = _block(name, shape, count, place)[argument.role == "out"]
@@ -172,7 +173,10 @@ def _symrot_text(name: str) -> str:
 
 
 def _peers(name: str) -> tuple[dict[str, tuple[str, Counter[str]]], list[str]]:
-    """Return the C text and the operations of each tool's version of a kernel, and the names of the missing tools."""
+    """Return a map from each tool but heyoka, such as CasADi, to its C text of a kernel and the operations in the text.
+
+    The second result lists the tools that are not installed.
+    """
     peers: dict[str, tuple[str, Counter[str]]] = {}
     missing = []
     for tool, make in PEERS_IN_C.items():
@@ -190,9 +194,10 @@ def _peers(name: str) -> tuple[dict[str, tuple[str, Counter[str]]], list[str]]:
 
 
 def contest(name: str, many: int = MANY) -> tuple[list[Contestant], list[str]]:
-    """Return the contestants for a kernel, symrot first, and the names of the missing tools.
+    """Return the kernel ``name`` as symrot and as each other tool generates it, and the names of the missing tools.
 
-    Raise AssertionError if the outputs of two tools differ.
+    Symrot comes first. ``many`` is the number of samples of the larger batch. Raise AssertionError if the outputs of a
+    tool differ from symrot's.
     """
     contestants: list[Contestant] = []
     signature = kernel_program(name).signature
@@ -221,7 +226,7 @@ def contest(name: str, many: int = MANY) -> tuple[list[Contestant], list[str]]:
 
 
 def measure(contestants: Sequence[Contestant], rounds: int) -> None:
-    """Time all contestants in rounds, and append the times to ``seconds`` of each contestant."""
+    """Time the kernels of all tools, one after the other in each round, and append the times to ``seconds`` of each."""
     draw = Random(5)
     for number in range(rounds):
         # The previous contestant fills the caches, so the order changes.

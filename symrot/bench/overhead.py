@@ -49,8 +49,8 @@ def _bare_stepper(propagate: Propagator, times: "np.ndarray[tuple[int], np.dtype
     bare()
     if run.next != len(times) or call(place, *arguments) != DONE:
         raise InputError(
-            f"{propagate.scene.name}: expected a motion that one call of a C stepper follows to its end; choose a "
-            "shorter span or another scene"
+            f"{propagate.scene.name}: expected a motion that the compiled integrator follows to its end in one "
+            "call, so that this call can be timed; choose a shorter span or another scene"
         )
     return bare
 
@@ -104,7 +104,7 @@ def main(arguments: list[str] | None = None) -> None:
                 every.setdefault(samples, []).append(call - bare)
                 print(f"{name:28}{method:>8}{samples:9d}{call:10.1f}{bare:10.1f}{call - bare:11.1f}")
     for samples, costs in every.items():
-        print(f"{samples} samples: median {np.median(costs):.1f} us of Python, most {max(costs):.1f}")
+        print(f"{samples} samples: median {np.median(costs):.1f} us of Python, maximum {max(costs):.1f}")
 
 
 if __name__ == "__main__":

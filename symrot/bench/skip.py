@@ -96,7 +96,7 @@ def measure(name: str | None = None, quick: bool = False, say: Progress = lambda
         rows.append(row)
         entries += [(row, key, Measured(key, 0.0, 0, 0.0, seconds_of(run)), run) for key, run in runs.items()]
     race([(measured, run) for _, _, measured, run in entries], 5 if quick else 15,
-         lambda number: say(f"{len(entries)} runs in turns: round {number + 1}"))  # fmt: skip
+         lambda number: say(f"{len(entries)} runs in turn: round {number + 1}"))  # fmt: skip
     for row, key, measured, _ in entries:
         side, what = key.split()
         row[side][what] = measured.median / (STATES * TURNS if what == "evaluation" else 1)
@@ -104,7 +104,10 @@ def measure(name: str | None = None, quick: bool = False, say: Progress = lambda
 
 
 def _row(about: str, scene: Scene) -> tuple[dict[str, Any], dict[str, Callable[[], object]]]:
-    """Return a row of the table without its times, and a map from each column of times to the function to be timed."""
+    """Return a row of the table for ``scene``, with the times still missing, and the functions to be timed.
+
+    ``about`` describes the motion. The functions are a map from the time that is missing, such as ``"own motion"``.
+    """
     plans = {"general": general_plan(scene), "own": make_plan(scene)}
     row: dict[str, Any] = {"motion": about}
     runs: dict[str, Callable[[], object]] = {}
@@ -145,7 +148,10 @@ def _scaled(value: float | None, unit: float) -> str:
 
 
 def lines(results: Mapping[str, Any]) -> list[str]:
-    """Return the table as lines of text, the first of which is the title; ``results`` come from :func:`measure`."""
+    """Return, as lines of text with a title, the table of times that specialised kernels save.
+
+    ``results`` come from :func:`measure`.
+    """
     from symrot.report.layout import columns, fields, room
 
     rows = [["motion", "states", "operations", "ns", "motion us", "auto us", "", "ends apart"]]

@@ -37,7 +37,10 @@ def _symrot() -> list[str]:
 
 
 def main(arguments: list[str]) -> int:
-    """Print the table of starting times; arguments are the number of rounds and the scene."""
+    """Print how long ``symrot run`` takes from the shell, and how long its parts take, such as ``import numpy``.
+
+    ``arguments`` may hold the number of rounds and the name of a scene.
+    """
     rounds = int(arguments[0]) if arguments else ROUNDS
     scene = arguments[1] if len(arguments) > 1 else "tumbling_prism"
     with TemporaryDirectory(prefix="symrot-") as directory:
@@ -65,9 +68,10 @@ def main(arguments: list[str]) -> int:
     for name, values in rows.items():
         print(f"  {name:<18} {middle[name]:.3f} ({min(values):.3f})")
     pairs = zip(rows["symrot run, warm"], rows["import numpy"], strict=True)
-    print(f"  warm / import numpy, median of pairs      {median(one / other for one, other in pairs):.2f}")
+    ratio = median(one / other for one, other in pairs)
+    print(f"  symrot run, warm, divided by import numpy: {ratio:.2f} (median of the ratios)")
     both = middle["import sympy"] + middle["compiler call"]
-    print(f"  cold / (import sympy + compiler call)     {middle['symrot run, cold'] / both:.2f}")
+    print(f"  symrot run, cold, divided by import sympy + compiler call: {middle['symrot run, cold'] / both:.2f}")
     return 0
 
 

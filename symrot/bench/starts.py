@@ -89,7 +89,9 @@ def _start(scene: Scene) -> tuple[Floats, Floats]:
 
 
 def _medians(one: Callable[[], object], other: Callable[[], object], rounds: int) -> tuple[float, float]:
-    """Time two functions alternately; return two medians in us: the time of ``one``, and its excess over ``other``."""
+    """Time two functions alternately; return two medians, microseconds: the time of ``one``, and its excess over
+    ``other``.
+    """
     times = np.empty((rounds, 2))
     for k in range(rounds):
         began = process_time_ns()
@@ -103,7 +105,7 @@ def _medians(one: Callable[[], object], other: Callable[[], object], rounds: int
 
 
 def _call(propagate: Propagator, start: dict[str, Any], rounds: int) -> tuple[float, float]:
-    """Return two times, us, of a propagator's call with a new initial state: the call, and its part outside of C.
+    """Return two times, microseconds, of a propagator's call with a new initial state: in all, and outside of C.
 
     ``start`` holds the new ``omega``, the new ``quaternion``, or both.
     """
@@ -117,7 +119,7 @@ def _call(propagate: Propagator, start: dict[str, Any], rounds: int) -> tuple[fl
 
 
 def _in_c(motion: Any, initial: Any, rounds: int) -> float:
-    """Return the time, us, in which C computes the constants of a closed form from a new initial state.
+    """Return the time, microseconds, in which C computes the constants of a closed form from a new initial state.
 
     It is 0 for steppers, which have no such constants, and for the closed forms of libraries ``axial`` and ``spin_up``,
     for which the time in C is not separated from the time in Python.
@@ -145,10 +147,11 @@ def _in_c(motion: Any, initial: Any, rounds: int) -> float:
 
 
 def changed_starts(scenes: list[str], rounds: int) -> None:
-    """Print a table of the times of propagator calls with a new initial state, a row for each scene and method.
+    """Print a table of the times, microseconds, of a propagator's call with a new initial state.
 
-    In us: whole calls with a new angular velocity, a new attitude and both; then the time that Python takes in the
-    slower of the first two calls, and in the third.
+    It has a row for each scene and method. The first three columns are whole calls: with a new angular velocity, with a
+    new attitude, and with both. Column 4 is the time outside of C in one of the first two calls (the larger of the
+    two), and column 5 that in the third call.
     """
     heads = ("omega", "attitude", "both", "Python", "of both")
     print(f"{'us of a changed start':28}{'method':>8}" + "".join(f"{head:>9}" for head in heads))

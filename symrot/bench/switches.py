@@ -97,7 +97,7 @@ def _measured(problem: Problem, method: str, tolerance: float) -> tuple[float, A
 
 
 def main() -> None:
-    """Print error, steps and time for each motion with a switched torque."""
+    """Print error, steps and time for each motion with a torque that jumps at times, such as dry friction."""
     rows = [("torque", "method", "tolerance", "error, tolerances", "steps", "switches", "time")]
     for name, problem in PROBLEMS.items():
         for method in METHODS:

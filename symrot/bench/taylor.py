@@ -132,7 +132,7 @@ def compute_reference(name: str, scale: float = 1.0) -> list[Any]:
 def references_text() -> str:
     """Return the TOML text of the file :data:`REFERENCES`, with all references computed again."""
     lines = [
-        "# Last states of the motions of symrot.bench.taylor, in 40 digits and rounded to 25.",
+        "# Final states of the motions of symrot.bench.taylor, in 40 digits and rounded to 25.",
         "# Printed by `python -m symrot.bench.taylor --reference`.",
     ]
     for name in MOTIONS:
@@ -219,14 +219,16 @@ def _contestants(problem: SteppedProblem, settings: bool) -> list[Task]:
 
 
 def measure(name: str, rounds: int = 9, settings: bool = False, scale: float = 1.0) -> list[Measured]:
-    """Time all contestants on one motion over ``scale`` times its span, and return their runs."""
+    """Compute one motion over ``scale`` times its span with all steppers; return the steps, time and error of each run.
+
+    With ``settings``, heyoka runs in all its settings; otherwise only in the default.
+    """
     problem, exact = SteppedProblem(name, scale), reference(name, scale)
-    # With ``settings``, heyoka runs in all its settings; otherwise only in the default.
     return raced(_contestants(problem, settings), partial(problem.largest_error, exact=exact), rounds)
 
 
 def best_of(runs: Iterable[Measured], error: float, names: Sequence[str]) -> Measured | None:
-    """Return the fastest run of the contestants ``names`` whose error is at most ``error``; None if there is none."""
+    """Return the fastest run of the steppers ``names`` whose error is at most ``error``; None if there is none."""
     good = [run for run in runs if run.name in names and run.error <= error]
     return min(good, key=lambda run: run.least, default=None)
 

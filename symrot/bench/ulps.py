@@ -42,7 +42,7 @@ Floats = NDArray[np.float64]
 
 @dataclass(frozen=True)
 class Function:
-    """A function that kernels call: how mpmath computes it, which C functions compute it, and the range of tests."""
+    """A function that kernels call: how mpmath computes it, its C functions, and the range of the tested arguments."""
 
     name: str
     exact: Callable[..., Any]  # from the arguments, numbers of mpmath, to the exact value

@@ -127,7 +127,10 @@ def audit(path: Path, symrot_statement: Callable[[Data], Data | None]) -> tuple[
 
 
 def _audited(path: Path, data: Data, symrot_statement: Callable[[Data], Data | None]) -> list[str]:
-    """Check the header, the C text and the statements of a certificate; return a sentence for each check."""
+    """Check a certificate, parsed as ``data``, with the kernel's header and C text; return a sentence for each check.
+
+    The statements of the certificate are compared with those that ``symrot_statement`` derives, as in :func:`audit`.
+    """
     name = data["kernel"]
     # CertificateError is raised at the first check that fails
     source, header = ((path.parent / f"{name}{end}").read_text(encoding="utf-8") for end in (".c", ".h"))

@@ -242,9 +242,10 @@ class KernelCheck:
         return written, exact * self.symbols["pi"] if times_pi else exact
 
     def run(self, body, places, targets=(), tested=()):
-        """Evaluate the statements ``body`` of a C function as :meth:`Evaluator.run` does, and return its result.
+        """Evaluate the statements ``body`` of a C function and return the computed values, as :meth:`Evaluator.run`.
 
-        ValueError is raised if a function of limited range has an argument that is not in ``tested``.
+        ``tested`` lists the angles whose size the C text tests. ValueError is raised if the body calls a function that
+        is accurate only for small angles, such as ``symrot_sin``, for an angle that is not in ``tested``.
         """
         reader = Evaluator({}, self.functions, self.real, self.calls, self.constants if targets else ())
         computed = reader.run(body, places, targets)

@@ -158,10 +158,11 @@ class FlagEffect:
 
     @property
     def accepted(self) -> bool:
-        """Whether the flags keep the proven error bounds: True unless ``holds`` is "nothing".
+        """Whether the flags, judged alone, keep the proven error bounds: False if ``holds`` is "nothing".
 
-        It is also True with contraction, although a bound may then fail for an output in which one product is fused
-        into a sum at one place and rounded at another; only the comparison of object code finds such outputs.
+        For flags that allow fused multiply-add, True is not the whole truth: a bound may fail for an output in which
+        one product is fused into a sum at one place and rounded at another. Only the comparison of object code finds
+        such outputs.
         """
         # if ``holds`` is "bounds", results may differ in bits
         return self.holds != NOTHING

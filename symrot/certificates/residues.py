@@ -87,9 +87,10 @@ def _function(name: str) -> Callable[..., Residue]:
 
 RANDOM = {name: _function(name) for name in (*FUNCTIONS, "copysign")}
 RANDOM["sinc"] = lambda x: RANDOM["sin"](x) / x
-"""Name of a function such as ``"sin"`` -> the random function of residues by which formulas are evaluated instead.
+"""A map from the name of a function, such as ``"sin"``, to its substitute in arithmetic modulo PRIME.
 
-Calls with equal arguments have equal values. ``"sinc"`` is the random sine of x, divided by x.
+The substitute returns a random residue, the same for equal arguments. The substitute of ``sinc`` of x is that of the
+sine of x, divided by x.
 """
 
 

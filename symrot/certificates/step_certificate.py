@@ -241,10 +241,10 @@ def bounds_of_step(
 
 
 def _require_intended(rates: Program) -> None:
-    """Raise InputError if the C text of the rates would be read with another constant than the rates have.
+    """Raise InputError if the certificate would take a constant in the C text of the rates for another number.
 
-    For example, the constant 0.3333333333333333 is refused: its double is that of 1/3, and reads as 1/3. The constants
-    1/3 and 0.3 are accepted.
+    For example, the constant 0.3333333333333333 is refused: its double is that of 1/3, so the certificate takes it for
+    1/3. The constants 1/3 and 0.3 are accepted.
     """
     # the C text has the double alone, whose rounding error is bounded as that of the number for which it stands
     pending = [node for _, node in (*rates.temporaries, *rates.outputs)]

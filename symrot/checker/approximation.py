@@ -29,18 +29,18 @@ __all__ = ["verdict_on_approximation"]
 
 SIGN = re.compile(r"≈|≃|\\(?:approx|simeq)(?![A-Za-z])")
 MOST_POWER, MOST_LEFT_OUT = 8, 4
-"""The highest power of the small letter, such as x in ``sin(x) ≈ x``, whose Taylor coefficients are compared; and the
-number of powers above the degree of a polynomial right side among which the first omitted term, here ``-x^3/6``, is
-sought."""
+"""MOST_POWER is the highest power of x whose Taylor coefficients are compared for ``sin(x) ≈ x``, read for small x.
+
+The first term that the right side omits, here ``-x^3/6``, is sought among its next MOST_LEFT_OUT powers, x^2 to x^5."""
 
 
 def verdict_on_approximation(source: str) -> Verdict | None:
     """Return the verdict on ``f ≈ g`` for small values of a letter; None for other texts.
 
-    The small letter is one in which f is no polynomial. If g is a polynomial in exactly one such letter, g should be
-    the Taylor polynomial of f in it. If f has a single such letter, and g is no polynomial in it either, as in
-    ``tan θ ≈ sin θ``, both Taylor series should agree in their first terms, one of which must be nonzero and contain
-    the letter.
+    The small letter, x in ``sin(x) ≈ x``, is a symbol in which f is no polynomial. If g is a polynomial in exactly one
+    such symbol, g should be the Taylor polynomial of f in it. If f has a single such symbol, and g is no polynomial in
+    it either, as in ``tan θ ≈ sin θ``, both Taylor series should agree in their first terms, one of which must be
+    nonzero and contain the symbol.
     """
     if len(SIGN.findall(source)) != 1 or re.search("[=<>]", source):
         return None
@@ -72,8 +72,10 @@ def _verdict(source: str) -> Verdict | None:
 
 
 class _Unknown(Exception):
-    """Exception raised if comparing Taylor coefficients decides nothing: two of them cannot be compared, or all up to
-    the power MOST_POWER are equal although both formulas are not proven to be.
+    """Exception raised if comparing Taylor coefficients decides nothing.
+
+    Two coefficients cannot be compared, or all up to the power MOST_POWER are equal, but the formulas are not proven
+    equal.
     """
 
 

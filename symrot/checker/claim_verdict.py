@@ -1,8 +1,8 @@
 """The verdict on one claim: the claim is decided, or recognised as a known formula, and diagnosed if it is not true.
 
 The functions ``_on_name``, ``_on_rule``, ``_on_relation``, ``_on_determinant`` and ``_on_expanded`` recognise a claim.
-They return (None, verdict): None in place of a decision, since a recognised claim has none. They return None for claims
-that they do not recognise.
+They return a pair (None, verdict), whose None stands in place of a decision, since a recognised claim has none. They
+return None for claims that they do not recognise.
 """
 
 from collections.abc import Callable, Iterator
@@ -179,9 +179,10 @@ def _of_another_reading(claim: Claim) -> Verdict | None:
 def _on_name(
     claim: Claim, repair: bool, formula_of: Callable[[Claim], NamedFormula | None]
 ) -> tuple[None, Verdict] | None:
-    """Return (None, verdict) for a claim such as ``I_zz == m*r**2/2``, a formula for an undefined quantity.
+    """Return (None, verdict) for a claim such as ``I_zz == m*r**2/2``, a formula for a quantity without a definition.
 
-    Return None for other claims.
+    ``formula_of`` finds the quantity and its formula; ``repair`` is whether to search repairs. None in the pair stands
+    in place of a decision, which such a claim does not have. Return None for other claims.
     """
     if (other := with_minus_sign(claim) or with_axis_z(claim)) is not None:
         result = _on_name(other.claim, repair, formula_of)
@@ -195,7 +196,6 @@ def _on_name(
     named = formula_of(claim) if claim.relation is not None else None
     if named is None:
         return None
-    # such a claim can be recognised, but not decided: None stands in place of a decision, here and below
     from symrot.checker.context.exchanged_letters import by_exchanged_letters
     from symrot.checker.context.named_bodies import of_named_body
     from symrot.checker.context.sizes import by_other_sizes
@@ -230,7 +230,10 @@ def _on_name(
 
 
 def _on_rule(claim: Claim) -> tuple[None, Verdict] | None:
-    """Return (None, verdict) for a rule of differentiation, such as ``(u v)' = u' v + u v'``; None for other claims."""
+    """Return (None, verdict) for a rule of differentiation, such as ``(u v)' = u' v + u v'``; None for other claims.
+
+    None in the pair stands in place of a decision.
+    """
     if claim.relation is None or open_formula(claim) is None or (general := as_functions(claim)) is None:
         return None
     decision, verdict = _decide(general)  # for all functions u(t) and v(t)
@@ -275,7 +278,10 @@ def _on_motion(claim: Claim, verdict: Verdict) -> Verdict:
 
 
 def _on_relation(claim: Claim) -> tuple[None, Verdict] | None:
-    """Return (None, verdict) for a known relation, such as an impulse equation; None for other claims."""
+    """Return (None, verdict) for a relation that symrot knows, such as an impulse equation; None for other claims.
+
+    None in the pair stands in place of a decision.
+    """
     if claim.relation is None or claim.hypotheses:
         return None
     from symrot.checker.recognition.naming.verdicts import verdict_on_relation
@@ -286,7 +292,10 @@ def _on_relation(claim: Claim) -> tuple[None, Verdict] | None:
 
 
 def _on_determinant(claim: Claim, repair: bool) -> tuple[None, Verdict] | None:
-    """Return (None, verdict) for a claim about the determinant of a rate Jacobian; None for other claims."""
+    """Return (None, verdict) for a claim about the determinant of a rate Jacobian; None for other claims.
+
+    None in the pair stands in place of a decision.
+    """
     if claim.relation is None or claim.hypotheses:
         return None
     from symrot.checker.context.determinants import verdict_on_determinant
@@ -297,10 +306,11 @@ def _on_determinant(claim: Claim, repair: bool) -> tuple[None, Verdict] | None:
 
 
 def _on_expanded(claim: Claim, repair: bool) -> tuple[None, Verdict] | None:
-    """Return (None, verdict) for a claim that gives a quantity's formula once hypotheses are put in; None for
-    others.
+    """Return (None, verdict) for a claim that is recognised once its abbreviations are replaced; None for other claims.
+
+    Abbreviations are hypotheses such as ``c1 == cos(alpha)``. None in the pair stands in place of a decision.
     """
-    expanded = claim.expanded  # hypotheses such as c1 = cos(alpha) are abbreviations
+    expanded = claim.expanded
     if expanded is claim or expanded.hypotheses:
         return None
     named = _on_name(expanded, repair, related_formula) or _on_relation(expanded)

@@ -35,7 +35,8 @@ TURNING = {"B", "b", "body", "rot", "rotating", "r"}
 """Names of a rotating frame, as written at a derivative: B in ``(dA/dt)_B``."""
 
 MARKED = "moving"
-"""Name given to the rotating frame of ``d'A/dt`` and of A with a ring above, which name no frame themselves."""
+"""Name that symrot gives to the frame of ``d'A/dt``, and of A with a ring above: these derivatives are those in a
+rotating frame, but do not name it."""
 
 TEXT = r"\{?\\(?:mathrm|text|textrm|mathcal|textit|rm)\s*\{?\s*(?P<{0}t>\w+'?)\s*\}*"
 LABEL = r"(?:_\s*(?:\{\s*(?P<{0}b>\w+'?)\s*\}|" + TEXT + r"|(?P<{0}w>\w)(?!\w)))"
@@ -71,7 +72,8 @@ PLAIN = tuple(re.compile(pattern) for pattern in (
     r"(?<![\w(])d(?P<v>\w)\s*/\s*dt(?!\w)",
     "(?P<v>\\w)\N{COMBINING DOT ABOVE}",
 ))  # fmt: skip
-"""Patterns of the time derivative of a vector in plain text, in the same order: ``(dA/dt)_B`` before ``dA/dt``."""
+"""Patterns of the time derivative of a vector in plain text: first those that show the frame, as ``(dA/dt)_B`` does,
+then those that do not, such as ``dA/dt``."""
 
 OMEGA = r"(?P<omega>\\(?:boldsymbol|mathbf|vec|bm)\s*(?:\{\s*\\\w+\s*\}|\\\w+)|\\[oO]mega|[ωΩ])\s*"
 MARK = r"\{?\s*(?:\\(?:mathcal|mathrm|text)\s*\{?)?\s*(?P<{0}>\w+'?)\s*\}*"
@@ -153,9 +155,10 @@ def verdict_on_rates(source: str) -> Verdict | None:
 
 
 def _with_operand(source: str) -> str:
-    """Return an equation with the sign × for a letter x between ω, or w, and a letter.
+    """Return an equation with the sign × for a letter x between ω, or w, and a letter, as in ``ω x A``.
 
-    Append a vector A to each ``(d/dt)_I`` and to the end of an equation between operators in LaTeX, which ends with ×.
+    An equation between operators in LaTeX, ``(d/dt)_I = (d/dt)_B + ω ×``, gets a vector A after each ``(d/dt)`` and
+    after the × at its end.
     """
     source = re.sub(r"(?<=[wωΩ]) x (?=\w\b)", " × ", source)
     if not re.search(r"\\times\s*$", source):
@@ -182,7 +185,8 @@ def _without_direction(source: str, still: str, moving: str) -> tuple[str, list[
 def without_marks(source: str) -> tuple[str, str]:
     """Return (text, note): a text with ``dA/dt`` in place of ``(dA/dt)_s``, and a note for the user on the frame s.
 
-    Return the text unchanged and "" if no frame, or several frames, from INERTIAL and TURNING are written in it.
+    The marks such as s are left out if all derivatives with a usual name of a frame (one in INERTIAL or TURNING) have
+    the same mark. Otherwise return the text unchanged and the note "".
     """
     marked = [rate for rate in _rates_in(source) if rate.frame in {*INERTIAL, *TURNING} - {""}]
     if not marked or len({rate.frame for rate in marked}) != 1:

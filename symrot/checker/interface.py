@@ -237,7 +237,8 @@ def check_file(path: str | Path, *, repair: bool = True) -> list[Verdict]:
 def verdicts_of_file(
     path: str | Path, repair: bool = True, progress: Callable[[str], None] = lambda text: None
 ) -> Iterator[Verdict]:
-    """Yield the verdict on each claim of a file: ``"refused"``, with a reason, if it cannot be read or has no meaning.
+    """Yield the verdict on each claim of a file; a claim that cannot be read or has no meaning is ``"refused"``, with a
+    reason.
 
     ``progress`` is called with a line of text before each claim.
     """

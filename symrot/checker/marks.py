@@ -16,7 +16,7 @@ Span = tuple[int, int]
 """Start and end (exclusive) of a part of a text."""
 
 TOKEN = re.compile(r"\\[A-Za-z]+|\\.|[^\W\d]\w*|\d+(?:\.\d+)?|\*\*|==|\s+|.", re.DOTALL)
-"""A name, a number, a command of LaTeX, a sign, or blanks."""
+"""Pattern of one token of a text: a name, a number, a command of LaTeX, a sign, or a run of blanks."""
 
 
 def changed_spans(claim: str, repair: str) -> tuple[Span, ...]:

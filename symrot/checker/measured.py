@@ -20,8 +20,8 @@ __all__ = ["in_degrees", "with_units"]
 
 CIRCULAR = ("sin", "cos", "tan", "cot", "sec", "csc")
 DECIMAL, ROUNDED_WHOLE = r"\d+\.\d+(?:[eE][+-]?\d+)?", r"[1-9]\d*[1-9]"
-"""Patterns of a decimal number, and of a whole number that may be rounded: 37, but not 40, which may be rounded to tens
-or to ones."""
+"""Patterns of a decimal number, and of a whole number that may have been rounded to ones, such as 37. A number that
+ends with 0 does not match: 40 may have been rounded to tens or to ones."""
 
 LONG_WHOLE = 3
 """The smallest number of digits of a whole number that may be a rounded rational value, as in 1 hp = 746 W."""
@@ -130,10 +130,10 @@ def _is_irrational(claim: Claim, value: Node) -> bool:
 
 
 def _to_digits(worked: Claim, measured: Measured, unit: str, is_right: bool) -> Verdict | None:
-    """Return "true" or "false" for a claim ``worked`` whose value does or does not round to its printed digits.
+    """Return the verdict on whether the value of the claim ``worked`` rounds to the digits that the claim states.
 
-    A false claim gets a repair if the right digits are known: ``unit`` is the unit after the digits, and ``is_right``
-    tells whether they are on the right side. Return None if the claim is undecided.
+    ``unit`` is the unit after these digits, ``is_right`` tells whether they are on the right-hand side of the equation
+    ``measured``. A false claim gets a repair if the correct digits can be computed. Return None if undecided.
     """
     digits = worked.printed
     decision = decide_value(worked)

@@ -62,8 +62,10 @@ def _open(verdict: Verdict, reason: str) -> Verdict:
 
 
 def _values(claim: Claim, letter: Node, once: bool) -> str | None:
-    """Return the real values of ``letter`` that solve the claim's equation, or one of them, as text, ``"x == 2"``; None
-    if none is known.
+    """Return values of ``letter`` that solve the claim's equation, as text such as ``"x == 2"``; None if none is known.
+
+    An equation that is a polynomial in the letter gives all real solutions, or their number. Another equation gives one
+    solution, by inverse functions, and only if the letter occurs ``once`` in it.
     """
     left, right = claim.equation.left, claim.equation.right
     symbol = claim.interpreter().read(letter)

@@ -195,8 +195,9 @@ def _correction(claim: Claim, verdict: Verdict, formula: PrintedFormula | None) 
 
 
 def _inner(kind: str) -> Callable[[Node], Node]:
-    """Return a function that maps a node of one ``kind`` to its first argument, ``-a`` to a for "neg", and any other
-    node to itself.
+    """Return a function that replaces a node of the given kind by its first argument: ``-a`` by a for "neg".
+
+    The function returns any other node unchanged.
     """
     return lambda node: node.args[0] if node.kind == kind else node
 
@@ -223,8 +224,11 @@ LOSSES: dict[str, Callable[[Node], Node]] = {
     "dots": _without_dots,
     "primes": _without_primes,
 }
-"""Kind of characters that an extraction may lose -> a function from a node of a formula to the node without these
-characters. A power on lost absolute-value bars is lost with the bars."""
+"""Kind of characters that may be lost when the text of a document is extracted -> function that removes them.
+
+The function takes a node of a formula and returns the node without such characters. A power on lost absolute-value bars
+is lost with the bars.
+"""
 
 
 def _is_reading(claim: Claim, other: tuple[str, Node, Node], lost: Collection[str]) -> bool:
@@ -234,8 +238,9 @@ def _is_reading(claim: Claim, other: tuple[str, Node, Node], lost: Collection[st
 
 
 def differs_by_lost_characters(printed: Node, right: Node, lost: Collection[str]) -> bool:
-    """Return whether two formulas are equal without the characters ``lost``; "token order" also allows any order of
-    letters.
+    """Return whether two formulas are equal after the characters of the kinds ``lost`` are removed from both.
+
+    The kinds are the keys of ``LOSSES``. If "token order" is in ``lost`` too, the letters may be in any order.
 
     Examples
     --------
@@ -253,7 +258,10 @@ def differs_by_lost_characters(printed: Node, right: Node, lost: Collection[str]
 
 
 def _extracted(node: Node, lost: Collection[str]) -> Node:
-    """Return a formula as it looks without all characters of the kinds ``lost``: ``a + b`` for ``a - b``."""
+    """Return a formula without its characters of the kinds ``lost``: ``a + b`` for ``a - b`` without minus signs.
+
+    The terms are a and -b, so that ``a - b`` without its minus sign is the sum of a and b.
+    """
     node = replace(node, args=tuple(_extracted(child, lost) for child in node.args))
     for loss in lost:
         node = LOSSES[loss](node) if loss in LOSSES else node

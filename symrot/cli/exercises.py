@@ -83,7 +83,7 @@ def _exercise_arguments(parser: ArgumentParser) -> None:
     )
     parser.add_argument("--count", type=_whole, default=1, metavar="K", help="how many exercises (default: 1)")
     parser.add_argument(
-        "--format", choices=FORMS, help="format of the sheet (default: by the end of FILE's name, otherwise markdown)"
+        "--format", choices=FORMS, help="format of the sheet (default: by the suffix of FILE, otherwise markdown)"
     )
     parser.add_argument(
         "-o", type=Path, metavar="FILE", dest="output", help="write to a file (default: standard output)"

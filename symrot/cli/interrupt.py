@@ -32,7 +32,10 @@ def repeat_lost_interrupts() -> None:
 
 
 def end_quietly() -> None:
-    """Discard exceptions that Python raises at its exit, which may find the pipe of a killed process closed."""
+    """Make Python print nothing about the exceptions that it discards while it exits.
+
+    For example, a clean-up at the exit may find that the pipe to a killed process is closed.
+    """
     sys.unraisablehook = lambda discarded: None
 
 

@@ -177,9 +177,10 @@ def _noticed(omega: Floats) -> Floats:
 
 
 def free_bodies(body: FreeRigidBody, omega: Floats, start: Floats) -> Batch:
-    """Return the motions of one free body from n initial states as a batch; ``omega`` must pass :func:`usual`.
+    """Return the motions of one free body from n initial states as a batch.
 
-    ``start`` are the initial attitudes that :func:`attitudes` returns, shape (n, 8) or (8,).
+    :func:`usual` must be True for all rows of ``omega``. ``start`` are the initial attitudes that :func:`attitudes`
+    returns: two doubles for each component of a quaternion, shape (n, 8), or (8,) for one attitude.
     """
     exact = np.empty((len(omega), 8))
     exact[:, :6] = body.gaps
@@ -197,7 +198,8 @@ def free_bodies(body: FreeRigidBody, omega: Floats, start: Floats) -> Batch:
 def free_bodies_of_moments(moments: Sequence[Column], omega: Floats, start: Floats) -> Batch:
     """Return the motions of n free bodies with the principal moments ``moments``, kg m^2, as a batch.
 
-    ``start`` are the initial attitudes that :func:`attitudes` returns, shape (n, 8) or (8,).
+    ``start`` are the initial attitudes that :func:`attitudes` returns: two doubles for each component of a quaternion,
+    shape (n, 8), or (8,) for one attitude.
     """
     omega, n = _noticed(omega), len(omega)
     exact, pairs = np.empty((n, 8)), _columns(moments, n)
@@ -220,12 +222,12 @@ def free_bodies_of_moments(moments: Sequence[Column], omega: Floats, start: Floa
 def free_bodies_of_tensors(
     entries: Sequence[Column], omega: Floats, start: Floats
 ) -> tuple[Batch | None, NDArray[np.bool_]]:
-    """Return (batch, settled): the motions of n free bodies in any axes, and a Boolean array of shape (n,).
+    """Return (batch, settled): the motions of n free bodies from their inertia tensors, and n Booleans as an array.
 
-    ``settled[i]`` is True if the constants of motion i in the batch have the same bits as those of a single motion; the
-    caller must compute the other motions one by one. ``entries`` are the tensor components xx, yy, zz, xy, xz and yz,
-    kg m^2; ``start`` are the initial attitudes that :func:`attitudes` returns. If a component that all motions share is
-    nonzero and not between SMALLEST and LARGEST in absolute value, the batch is None and ``settled`` is all False.
+    ``settled[i]`` is True if the batch has the constants of motion i with the same bits as if motion i were computed
+    alone; the caller must compute the other motions alone. ``entries`` are the tensor components xx, yy, zz, xy, xz and
+    yz, kg m^2; ``start`` are the initial attitudes that :func:`attitudes` returns. If a component that all motions
+    share is nonzero and not between SMALLEST and LARGEST in absolute value, the batch is None and ``settled`` is False.
     """
     settled = np.ones(len(omega), np.bool_)
     principal = bodies.principal_bodies(entries, omega)
@@ -261,8 +263,9 @@ def tops(
 def gyrostats(across: Column, own: Column, rotor: Column, axis: int, omega: Floats, start: Floats) -> Batch:
     """Return the motions of n symmetric gyrostats as a batch.
 
-    ``rotor`` is the rotor's angular momentum, kg m^2/s, along the symmetry axis ``axis`` (0, 1 or 2); ``across`` and
-    ``own`` are the moments about an axis normal to it and about it. ``start`` are attitudes from :func:`attitudes`.
+    ``rotor`` is the rotor's angular momentum, kg m^2/s, along the symmetry axis ``axis`` (0, 1 or 2). ``across`` and
+    ``own`` are the moments, kg m^2, about an axis normal to the symmetry axis and about the symmetry axis. ``start``
+    are the initial attitudes that :func:`attitudes` returns.
     """
     named = [(axis + 1) % 3, (axis + 2) % 3, axis]
     rates = _pairs(np.ascontiguousarray(omega[:, named]))
@@ -273,8 +276,8 @@ def gyrostats(across: Column, own: Column, rotor: Column, axis: int, omega: Floa
 def spin_ups(across: Column, own: Column, torque: Column, axis: int, omega: Floats, start: Floats) -> Batch:
     """Return the motions of n symmetric bodies under a constant torque, N m, about the body axis ``axis``, as a batch.
 
-    ``across`` and ``own`` are the moments about an axis normal to this axis and about it, kg m^2. ``start`` are the
-    initial attitudes that :func:`attitudes` returns.
+    ``across`` and ``own`` are the moments, kg m^2, about an axis normal to the driven axis and about the driven axis.
+    ``start`` are the initial attitudes that :func:`attitudes` returns.
     """
     numbers = np.empty((len(omega), 20))
     numbers[:, :6] = _columns([across, own, torque], len(omega))
@@ -286,8 +289,8 @@ def spin_ups(across: Column, own: Column, torque: Column, axis: int, omega: Floa
 def driven(constants: Constants | Sequence[Constants], omega: Floats, start: Floats) -> Batch:
     """Return the motions of n bodies driven about one axis as a batch.
 
-    ``constants`` are those of one body or a list of n, all with the same axis; ``start`` are the initial attitudes that
-    :func:`attitudes` returns, shape (n, 8) or (8,).
+    ``constants`` are the :class:`Constants` of one body, or a list of n, all with the same axis. ``start`` are the
+    initial attitudes that :func:`attitudes` returns, shape (n, 8) or (8,).
     """
     bodies = [constants] * len(omega) if isinstance(constants, Constants) else constants
     axis = bodies[0].axis

@@ -59,7 +59,7 @@ class ExactMotion(ABC):
         ------
         InputError
             If a time is not finite, if a product of a rate and a time exceeds the range of doubles, or if a motion with
-            theta functions makes more than 7e16 revolutions: rates of 31 digits do not give its phase.
+            theta functions makes more than 7e16 revolutions: 31 digits of its frequencies then do not give its phase.
         """
         times = times_of(t)
         rates = np.empty((len(times), 3)) if omega else None

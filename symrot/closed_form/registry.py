@@ -154,7 +154,8 @@ def _driven_axis(scene: Scene) -> int | None:
 def _driven_symmetry_axis(scene: Scene) -> int | None:
     """Return the index of the symmetry axis about which a constant torque drives the body.
 
-    None if the motion has no closed form.
+    Return None if there is no such axis, or if the scene's output includes the attitude and the body is damped: then
+    the attitude has no closed form.
     """
     if not _is_driven(scene):
         return None
@@ -188,9 +189,10 @@ def _axial(scene: Scene) -> Starts:
 
 
 def _field_axis(name: str) -> Callable[[Scene], int | None]:
-    """Return a function from a scene to the body axis (0, 1 or 2) along the vector ``name`` of the scene's torque.
+    """Return a function from a scene to the index (0, 1 or 2) of the body axis along a vector of its first torque.
 
-    That function returns None if the vector is along none of the three axes.
+    ``name`` is the vector's name in the scene, such as ``center_of_mass``. The function returns None if the vector is
+    zero or along none of the three axes.
     """
     return lambda scene: _only_axis(scene.torques[0].vector(name))
 

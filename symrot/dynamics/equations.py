@@ -1,7 +1,7 @@
-"""Equations of motion of a rigid body: Euler's equations and the quaternion rates, for the states of a plan.
+"""Equations of motion of a rigid body: Euler's equations and the quaternion rates, as formulas of states and constants.
 
-The structure of the plan says which constants are zero, equal or free. ``I domega/dt = tau - omega x (I omega + h)``
-and ``dq/dt = 1/2 q (0, omega_b)``, in body axes. Proof: ``derivations/euler_equations.md``,
+In body axes: ``I domega/dt = tau - omega x (I omega + h)`` and ``dq/dt = 1/2 q (0, omega_b)``. A structure says which
+constants are zero, equal or free, and which states the equations have. Proof: ``derivations/euler_equations.md``,
 ``derivations/quaternion_rates.md``.
 """
 
@@ -258,7 +258,7 @@ def sliding(equations: Equations, held: list[tuple[FormulaTorque, str]]) -> Equa
 
 
 def hurwitz_determinants(matrix: Matrix) -> tuple[Expr, ...]:
-    """Return numbers that are all positive if and only if all eigenvalues of a matrix have negative real parts.
+    """Return expressions that are all positive if and only if all eigenvalues of a matrix have negative real parts.
 
     Examples
     --------

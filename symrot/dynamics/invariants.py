@@ -74,10 +74,10 @@ def _candidates(equations: Equations, structure: Structure) -> Iterable[tuple[st
 
 
 def _of_torque(torque: TorqueStructure, momentum_s: Matrix, energy: Expr) -> Iterable[tuple[str, str, Expr, Expr]]:
-    """Yield the conserved quantities that a motion may have because of a torque, as (name, unit, value, tested).
+    """Yield the quantities that a torque may conserve, as (name, unit, value, tested).
 
-    The items are those of :func:`_candidates`. Gravity gives the vertical angular momentum, and the gravity gradient
-    the Jacobi integral; other torques give nothing.
+    Gravity gives the vertical angular momentum, and the gravity gradient the Jacobi integral; other torques give
+    nothing. ``tested`` is the formula to decide about, as in :func:`_candidates`: here the value itself.
     """
     if not isinstance(torque, FieldTorque):
         return

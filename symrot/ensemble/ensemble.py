@@ -169,7 +169,7 @@ class Ensemble(MotionSamples):
         self.methods, self.messages = followed.methods, followed.messages
         self.status = np.array([-1 if message else 0 for message in followed.messages], dtype=np.int64)
         of_scene = self.scene.warnings
-        self.warnings = tuple([(*of_scene, *own) for own in followed.warnings])
+        self.warnings = tuple([of_scene + own for own in followed.warnings]) if of_scene else followed.warnings
         self.stats = EnsembleStats(followed.steps, followed.evaluations, seconds)
         self.sensitivities = sensitivities
 

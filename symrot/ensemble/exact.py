@@ -57,7 +57,8 @@ def forms_of(variation: Variation) -> list[tuple[Kind, Rows]]:
 def _patterns(variation: Variation) -> list[tuple[Hashable, Rows]]:
     """Return trajectories grouped by which numbers are zero or equal, as pairs (pattern, indices of trajectories).
 
-    All trajectories of a group have the same closed form. The pattern None occurs for groups of one trajectory only.
+    All trajectories with one pattern, a hashable key, have the same closed form. If no key can tell this, each
+    trajectory is a group of its own, with None instead of a pattern.
     """
     columns, n = variation.columns, len(variation)
     code = (variation.omega != 0) @ np.array([1, 2, 4])
@@ -96,13 +97,14 @@ def _patterns(variation: Variation) -> list[tuple[Hashable, Rows]]:
 ARRAYS_LOSE_BELOW = {"symmetric body driven about its axis, angular velocity alone": 1e4}
 """Name of a closed form -> angle of rotation of a trajectory, rad, below which integration in steps is faster.
 
-It counts if only initial states vary in the ensemble; see :func:`choose`.
+This limit is used if only initial states vary in the ensemble, so that the closed form is computed for whole arrays of
+trajectories; see :func:`choose`.
 """
 
 ALONE_LOSES_BELOW = {"free_body": 1e4, "axial": 1e3, "spin_up": 1e3}
 """Library of a closed form -> angle of rotation of a trajectory, rad, below which integration in steps is faster.
 
-It counts where the closed form is computed for one trajectory after the other, not for arrays of them.
+This limit is used where the closed form is computed for one trajectory after the other, not for arrays of them.
 """
 
 
@@ -303,12 +305,15 @@ def _batches(variation: Variation, kind: Kind, rows: Rows) -> Iterator[tuple[Row
 
 
 def _parts(variation: Variation, kind: Kind, rows: Rows) -> Iterator[_Part]:
-    """Yield the trajectories ``rows`` in groups that one batch can compute: one, or two for heavy tops."""
+    """Yield the trajectories ``rows`` in groups, each of which one call of C can compute.
+
+    There is one group. Heavy tops whose centre of mass varies give two, with positive and with other components of the
+    centre of mass along the symmetry axis, because the formulas use different axes for them.
+    """
     groups = [rows]
     if kind.form and kind.form.library == "heavy_top" and variation.columns:
         height = variation.constant(f"{variation.prefix(0)}center_of_mass_{(kind.axis or 0) + 1}")
         if not isinstance(height, Fraction):
-            # the formulas use different axes for positive heights
             groups = [rows[height[rows] > 0], rows[height[rows] <= 0]]
     for group in groups:
         if len(group):
@@ -441,4 +446,7 @@ BATCHES: dict[str, Callable[[_Part], tuple["Batch | None", Usual]]] = {
     "axial": _driven,
     "spin_up": _spin_up,
 }
-"""For each library of closed forms, the function from a :class:`_Part` to (batch, whether each row is valid)."""
+"""Library of a closed form -> function that prepares some trajectories (a :class:`_Part`) for it.
+
+The function returns (batch, usual): the constants of the trajectories as arrays, or None if they must be computed one
+by one, and whether the arrays give the right bits, for each trajectory or for all."""

@@ -88,7 +88,7 @@ def translation_unit(
 def wrap_translation_unit(definitions: str, width: int | None = None) -> str:
     """Return the C source of a library that integrates motions in SIMD lanes; ``definitions`` are the Taylor series.
 
-    ``width`` is as for :func:`translation_unit`.
+    ``width`` is the number of lanes (1, 2, 4 or 8); default: as many as the processor's registers hold.
     """
     head = "" if width is None else "#define SYMROT_PLAIN\n" if width == 1 else f"#define SYMROT_LANES {width}\n"
     paths = ("propagation/steppers/library.h", "ensemble/lanes.h", "propagation/steppers/series.h", "ensemble/lanes.c")
@@ -113,7 +113,7 @@ class _Job(ctypes.Structure):
 
 
 class Outcome(NamedTuple):
-    """The states of n motions at their m times, shape (n, m, N), and the cost of each motion."""
+    """The results of n motions: their N states at m times, shape (n, m, N), and the cost of each motion, shape (n,)."""
 
     states: Floats  # NaN at times that a motion did not reach
     steps: Integers
@@ -163,7 +163,10 @@ class Lanes:
 
 @cache
 def lanes(path: str) -> Lanes:
-    """Return the library at ``path``, built from :func:`translation_unit`; each library is loaded only once."""
+    """Return the compiled library at ``path``, which integrates motions in SIMD lanes; each is loaded only once.
+
+    Its source is that of :func:`translation_unit` or :func:`wrap_translation_unit`.
+    """
     return Lanes(path)
 
 

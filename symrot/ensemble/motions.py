@@ -155,7 +155,8 @@ def _follow(problem: Problem, method: str, rows: Integers) -> Followed:
         stepper.read(outcome.states, omega, quaternion)
         for place, i in enumerate(stepped):
             methods[i], messages[i] = chosen, outcome.messages[place]
-            warnings[i] = outcome.warnings[place] if outcome.warnings else ()
+        for i, own in zip(stepped, outcome.warnings):  # noqa: B905 - empty if no motion has a warning
+            warnings[i] = own
         steps[stepped], evaluations[stepped] = outcome.steps, outcome.evaluations
     return Followed(omega, quaternion, tuple(methods), tuple(messages), tuple(warnings), steps, evaluations)
 

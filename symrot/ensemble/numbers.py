@@ -110,7 +110,7 @@ class Numbers:
         return result
 
     def _fixed(self, epoch: float) -> dict[str, Fraction]:
-        """Return pi, the epoch, s, and the constants that do not vary, by name."""
+        """Return a map from names to the numbers that all trajectories share: pi, the epoch (in s) and constants."""
         scene = Plan(self._variation.scene, self._plan.structure, ()).constants
         known = {"pi": number.PI, EPOCH: Fraction(epoch), **scene}
         return {name: value for name, value in known.items() if name not in self._columns}
@@ -149,13 +149,14 @@ def _in_fractions(function: Callable[[dict[str, Fraction]], Fraction], columns: 
 
 
 def _slope(
-    node: Node, fixed: Mapping[str, Fraction], moved: Mapping[str, Fraction], variable: str, own: Mapping[str, Fraction]
+    node: Node, fixed: Mapping[str, Fraction], moved: Mapping[str, Fraction], variable: str, one: Mapping[str, Fraction]
 ) -> Fraction:
-    """Return the derivative of the formula ``node`` by a variable; ``moved`` are the derivatives of the constants.
+    """Return the derivative of the formula ``node`` by a variable, for one trajectory.
 
-    ``A*B`` with A = 2, B = 3 and ``moved = {"A": 1}`` gives 3.
+    ``fixed`` are the constants that all trajectories share, ``one`` those of this trajectory, and ``moved`` the
+    derivatives of constants by the variable: ``A*B`` with A = 2, B = 3 and ``moved = {"A": 1}`` gives 3.
     """
-    constants = {**fixed, **own}  # own: those of one trajectory
+    constants = {**fixed, **one}
     ratios = [abs(constants[name] / slope) for name, slope in moved.items() if slope and name in constants]
     size = min((ratio for ratio in ratios if ratio), default=Fraction(1))
 

@@ -1,6 +1,6 @@
 """The derivatives of the motions of an ensemble by initial values and constants, in SIMD lanes.
 
-Motions under torques that jump or bend are followed one by one.
+Motions under torques with jumps or kinks are followed one by one.
 
 A column consists of the derivatives by one variable. The equations are those of
 :mod:`symrot.propagation.sensitivities.variation`. Every constant that varies in the ensemble is a parameter of the
@@ -114,9 +114,10 @@ def follow_sensitivities(problem: Problem, keys: Sequence[str]) -> tuple[Sensiti
 
 
 def _follow_switched(problem: Problem, keys: Sequence[str]) -> tuple[Sensitivities, tuple[str, ...]]:
-    """Return the derivatives of motions under torques that jump or bend, one by one; see :func:`follow_sensitivities`.
+    """Return the derivatives of motions under torques with jumps or kinks, which are followed one by one.
 
-    All derivatives of a motion are NaN if those at one of its times do not exist.
+    Arguments and result are those of :func:`follow_sensitivities`. All derivatives of a motion are NaN if those at one
+    of its times do not exist; its text then says why.
     """
     from symrot.propagation.sensitivities.switched import SwitchedEquations
 
@@ -150,15 +151,15 @@ def read_columns(scene: Scene, keys: Sequence[str], varying: Collection[str]) ->
     columns = columns_of(scene, variables)
     # varying: names of varying constants, and omega or quaternion if the initial states vary
     for column in columns:
-        _require_own(column, varying)
+        _require_shared(column, varying)
     return variables, columns
 
 
-def _require_own(column: Column, varying: Collection[str]) -> None:
-    """Raise InputError if the variable of ``column`` sets, beside itself, a number that differs between the motions.
+def _require_shared(column: Column, varying: Collection[str]) -> None:
+    """Raise InputError if the variable of ``column`` changes another number that differs between the motions.
 
-    An example is the variable gravity, which sets the weight, if the motions have different weights. ``varying`` has
-    the names of the constants that differ.
+    An example is the variable gravity, which changes the weight, if the motions have different weights. ``varying`` has
+    the names of the constants that differ, and omega or quaternion if the initial states do.
     """
     variable = column.variable
     if variable.key == ATTITUDE or variable.key.startswith("omega"):
@@ -298,8 +299,10 @@ class _Equations:
         return units
 
     def _integrate(self, p: Floats, y: Floats, times: Floats) -> tuple[Floats, Sequence[str]]:
-        """Return samples (n, m, 7 (1 + k)), states and derivatives at m times, and why each motion stopped early."""
-        # the reason is an empty text for a motion that did not stop early
+        """Return samples of n motions at m times, and for each motion why it stopped early, or an empty text.
+
+        A sample has the 7 states and their derivatives by k variables: the shape is (n, m, 7 (1 + k)).
+        """
         problem = self.problem
         if isinstance(self.compiled, Path):
             clock = problem.t0 - self.epoch, times - self.epoch

@@ -1,9 +1,8 @@
 """Congruence closure: among inverse functions or logarithms that are proven equal, one replaces the others.
 
 ``asin(x)`` and ``atan2(x, sqrt(1 - x^2))`` are equal, but the polynomial ring has an independent variable for each. A
-proof is returned as the polynomial rings that it computes in: it holds where no expression is zero by which the
-formulas in these rings divide. The arguments ``hypotheses`` are expressions that are zero, ``domain`` formulas that are
-nonnegative.
+proof is returned as the polynomial rings that it computes in; it holds wherever no divisor in these rings is zero. The
+arguments ``hypotheses`` are expressions that are zero, ``domain`` formulas that are nonnegative.
 """
 
 from collections.abc import Iterator, Sequence
@@ -52,7 +51,10 @@ def proof_by_congruence(
 def _equal_pairs(
     names: Sequence[Expr], hypotheses: Sequence[Expr], domain: Sequence[Expr]
 ) -> Iterator[tuple[Expr, Expr, tuple[FormulaRing, ...]]]:
-    """Yield (f, h, rings): ``f = h`` is proven in ``rings``, and h is g or ``pi/2 - g``, for f and g in ``names``."""
+    """Yield equal pairs as (f, h, rings): f is in ``names``, and h is g or ``pi/2 - g`` for another g in ``names``.
+
+    ``rings`` are the polynomial rings in which ``f = h`` is proven.
+    """
     for first, second in combinations(names, 2):
         for other in (first, pi / 2 - first):
             if not hypotheses and not seems_zero(second - other, domain):

@@ -34,9 +34,9 @@ ATTEMPTS = 60
 """Number of random points; a nonzero polynomial of degree d is zero at one of them with a probability of about d/40."""
 
 SIMPLER_TERMS = 200_000
-"""Largest number of terms that are evaluated to replace the numbers of a counterexample by shorter ones, one at a time.
+"""Largest number of terms that are evaluated in the search for a counterexample with shorter numbers.
 
-Each trial evaluates left - right once, with all its terms."""
+A trial replaces one number and evaluates all terms of left - right once."""
 
 UNMOVED = 20
 """Number of random points that are tried unchanged; later points are first moved into the domain if necessary."""
@@ -150,10 +150,10 @@ def _difference(ring: FormulaRing, left: Expr, right: Expr) -> tuple[Callable[[d
 def closed_form_witness(
     ring: FormulaRing, left: Expr, right: Expr, entry: tuple[int, int] | None
 ) -> Counterexample | None:
-    """Return a counterexample to ``left = right``: a point at which 50-digit intervals prove the inequality, or None.
+    """Return a counterexample to ``left = right``: a point at which 50-digit intervals prove that the sides differ.
 
-    Its symbols are rational or multiples of pi. ``entry`` is stored in the counterexample, as by
-    :func:`rational_witness`.
+    The values of the symbols at the point are rational or multiples of pi. ``entry`` is stored in the counterexample,
+    as by :func:`rational_witness`. The result is None if the search finds no such point.
     """
     places = {number: leaf for leaf, number in ring.symbols.items() if ring.leaves[leaf]}
     bound = occurring(ring.hypothesis_numerators)

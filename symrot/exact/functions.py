@@ -40,11 +40,11 @@ def is_function_of_time(node: Expr) -> bool:
         If the node is not a finite exact scalar.
     """
     if node.is_Float:
-        raise InputError(f"expected exact numbers, such as Rational(1, 2), in a decision; got the float {node}")
+        raise InputError(f"expected exact numbers, such as Rational(1, 2), in a claim; got the float {node}")
     if not isinstance(node, Expr) or not node.is_commutative or node is S.NaN or node.is_infinite:
         raise InputError(f"expected a claim made of finite numbers and scalar formulas, got {node}")
     if any(part.is_Float for part in preorder_traversal(node)):
-        raise InputError(f"expected exact numbers, such as Rational(1, 2), in a decision; got a float in {node}")
+        raise InputError(f"expected exact numbers, such as Rational(1, 2), in a claim; got a float in {node}")
     # such a node is a free real number, like a symbol
     if isinstance(node, Derivative):
         return isinstance(node.expr, AppliedUndef)

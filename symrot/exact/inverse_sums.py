@@ -25,7 +25,7 @@ from symrot.exact.sign_cases import vanishes_for_all_signs
 __all__ = ["Lift", "PrincipalValueProof", "lifts", "principal", "proof", "vanishes"]
 
 MOST_TERMS = 60
-"""A polynomial with more terms is not factored, so that no condition for it (:class:`Lift`) is found."""
+"""Largest number of terms of a polynomial that is factored; a longer one is not proven zero by its factors."""
 
 _NAMES = (*INVERSE, log)
 
@@ -138,9 +138,9 @@ def principal(ring: FormulaRing, numerator: PolyElement) -> PrincipalValueProof 
 
 
 def _principal_angle(ring: FormulaRing, leaf: Expr, angle: Expr) -> PrincipalValueProof | None:
-    """Return a proof that the inverse function ``leaf``, such as asin(S), is ``angle`` if that is in its range.
+    """Return a proof that the inverse function ``leaf``, such as asin(S), equals ``angle`` if the angle is in range.
 
-    None if the function of the angle, such as sin(angle), is not proven to be S.
+    The range is that of the inverse function. None if ``sin(angle) = S`` is not proven.
     """
     function, least, most = _PRINCIPAL[type(leaf)]
     with suppress(InputError):  # an angle that cannot be read proves nothing

@@ -1,9 +1,9 @@
 """Simplified arguments of functions: ``sin(sin(x)^2 + cos(x)^2) = sin(1)``.
 
 A polynomial ring has a variable for each call of an unknown function as it is written, also if two calls are equal. So
-arguments are replaced by normal forms first. Old and new formula are equal where no divisor in the polynomial rings is
-zero in which the normal forms are computed. The functions of this module return these rings; their arguments
-``hypotheses`` are expressions that are zero, ``domain`` formulas that are nonnegative.
+arguments are replaced by normal forms first, computed in polynomial rings. Old and new formula are equal wherever no
+divisor in these rings is zero. The functions of this module return the rings; their arguments ``hypotheses`` are
+expressions that are zero, ``domain`` formulas that are nonnegative.
 """
 
 from collections.abc import Sequence
@@ -24,7 +24,7 @@ MOST_LEVELS = 4
 """Largest number of levels of nested functions, from the inside out, whose arguments are put in normal form."""
 
 MOST_COMPARED = 8
-"""Largest number of arguments of functions, such as u in sin(u), that are tested in pairs whether they are equal."""
+"""Largest number of arguments of functions, such as u in sin(u), of which all pairs are tested for equality."""
 
 
 def with_plain_arguments(

@@ -23,7 +23,7 @@ __all__ = ["Chain", "Link", "chains"]
 
 @dataclass(frozen=True)
 class Link:
-    """One expression of a chain, with the ``reason`` why it equals the expression before it."""
+    """One expression in a chain of equal expressions, with the ``reason`` why it equals the expression before it."""
 
     expression: Expr
     reason: str
@@ -34,7 +34,10 @@ class Link:
 
 @dataclass(frozen=True)
 class Chain:
-    """The chain of equal expressions from left to right, for a scalar or for one ``entry`` of a matrix."""
+    """A chain of equal expressions from the left side of an equation to the right side.
+
+    The sides are scalars, or the same ``entry`` of two matrices.
+    """
 
     entry: tuple[int, int] | None  # (row, column), counted from 1; None for a scalar
     links: tuple[Link, ...]
@@ -73,12 +76,12 @@ def _chain(left: Expr, right: Expr, hypotheses: list[Expr]) -> tuple[Link, ...]:
     forward, backward = list(_way(ring, left)), list(_way(ring, right))
     links = [Link(left, ""), *forward]
     if forward[-1].expression != backward[-1].expression:
-        links.append(Link(backward[-1].expression, "crosswise products of numerators and denominators agree"))
+        links.append(Link(backward[-1].expression, "both sides agree after cross-multiplication of the fractions"))
     return _cleaned([*links, *_reversed(right, backward)])
 
 
 def _reversed(start: Expr, way: list[Link]) -> Iterator[Link]:
-    """Yield a chain in reverse: if ``start`` and ``way`` are a and b = c, the links b and a."""
+    """Yield the links of a chain in reverse: if ``way`` leads from ``start`` = a to b and c, the links b and a."""
     places = [start, *(link.expression for link in way)]
     for number in range(len(way) - 1, -1, -1):
         # each reason stays between the same two expressions

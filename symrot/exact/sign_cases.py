@@ -25,7 +25,9 @@ MOST_TERMS = 60
 """Largest number of terms of a radicand that is factored."""
 
 Constraint = tuple[int, frozenset[int]]
-"""(sign, indices of the ring's variables for some ``|f|``): the product of the signs of these f is ``sign``."""
+"""A pair (sign, indices of variables): each variable stands for an ``|f|``; the product of the signs of f is ``sign``.
+
+If sqrt(k m) is real, the pair (1, {variable of ``|k|``, variable of ``|m|``}) says that k and m have equal signs."""
 
 
 def vanishes_for_all_signs(ring: FormulaRing, numerator: PolyElement) -> bool:
@@ -90,10 +92,10 @@ def _constraints(ring: FormulaRing, insides: dict[int, PolyElement]) -> Iterator
 def _consistent(
     ring: FormulaRing, insides: dict[int, PolyElement], constraints: Sequence[Constraint]
 ) -> list[Constraint]:
-    """Return those of ``constraints`` on the signs of f in ``|f|`` that can all be satisfied at every point.
+    """Return a choice of ``constraints`` on the signs of f in ``|f|`` that can all be satisfied at every point.
 
-    ``insides`` maps the variable of each ``|f|`` to f. Two of the returned constraints have only such f in common as
-    are nowhere zero.
+    A constraint is left out if it shares, with one that was chosen before, an f that may be zero. ``insides`` maps the
+    variable of each ``|f|`` to f.
     """
     # formulas are defined only where a divisor is not zero
     divisors = {factor for poly in ring.ratios.factors for factor, _ in factor_list(poly)[1]}

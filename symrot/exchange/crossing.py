@@ -27,7 +27,9 @@ MOST_SEARCHED = 200_000
 """Largest number of triangles of a mesh in which all pairs of crossing triangles are searched."""
 
 MOST_ANGLES = 5_000_000
-"""Largest number of solid angles that are computed; it limits the number of contacts that are tested."""
+"""Largest number of solid angles that are computed, one for each triangle and test point.
+
+It limits the number of test points: inside the surface, and around the contacts at which triangles touch."""
 
 DIRECTIONS = 64  # number of points that are tested around a contact
 DISTANCE = 1e-3  # distance of these points from the contact, relative to the size of the mesh
@@ -79,8 +81,8 @@ def require_boundary(surface: Surface, where: str) -> str:
         pairs = "no two triangles cross"
         pairs += f"; triangles touch at {len(contacts)} points, {tested} of them tested" if len(contacts) else ""
     return (
-        f"the surface is closed ({parts}); {lines} of {len(chosen)} straight lines cross it alternately inwards and "
-        f"outwards, as is right, and the others meet an edge and test nothing; {pairs}"
+        f"the surface is closed ({parts}); {lines} of {len(chosen)} test lines cross it alternately inwards and "
+        f"outwards, as they must, and the others meet an edge, which tests nothing; {pairs}"
     )
 
 
@@ -102,9 +104,9 @@ def _chosen(corners: Floats, numbers: NDArray[np.int64], count: int) -> NDArray[
 
 
 def _passes(corners: Floats, boxes: _Boxes, triangle: int, where: str, surface: Surface) -> int:
-    """Return 1 if a line through a triangle passes the test, or 0 if every tried line meets an edge.
+    """Test the winding numbers along a line through a triangle; return 1, or 0 if every tried line meets an edge.
 
-    Raise InputError if a winding number is neither 0 nor 1.
+    Raise InputError if a winding number is neither 0 (outside the surface) nor 1 (inside).
     """
     own = corners[:, :, triangle]
     normal = np.cross(own[1] - own[0], own[2] - own[0])
@@ -271,7 +273,10 @@ def _windings(corners: Floats, points: Floats) -> Floats:
 
 
 def interior_points(surface: Surface) -> Floats:
-    """Return points of a lattice that are inside a surface, shape (n, 3); fewer for a surface of more triangles."""
+    """Return points of a lattice that are inside a surface, shape (n, 3).
+
+    If the surface has many triangles, only some points of the lattice are tested.
+    """
     lowest, size = surface.vertices.min(axis=0), np.ptp(surface.vertices, axis=0)
     lattice = np.stack(np.meshgrid(*[np.linspace(0, 1, 9)[1:-1]] * 3, indexing="ij"), axis=-1).reshape(-1, 3)
     count = min(len(lattice), MOST_ANGLES // len(surface.triangles))

@@ -108,7 +108,7 @@ def read_mesh(path: Path, where: str, *, mass: Any, density: Any, scale: Any, fl
     if (mass is None) == (density is None):
         amounts = "both" if mass is not None else "neither"
         raise InputError(f"{where}: expected exactly one of mass (kg) and density (kg/m^3) of a mesh, got {amounts}")
-    unit = _positive(scale, f"{where}: scale", "a length in m of the unit of the mesh")
+    unit = _positive(scale, f"{where}: scale", "a length in m, that of one unit of the mesh")
     if not Fraction(1, 10**30) <= unit <= 10**30:
         raise InputError(f"{where}: scale: expected a length from 1e-30 to 1e30 m, got {show(scale)}")
     surface = read_surface(path, where)
@@ -150,7 +150,8 @@ def polyhedron(surface: Surface, name: str, where: str, mass: Any, density: Any,
         if work > LARGEST_WORK:
             raise InputError(
                 f"{where}: expected a mesh whose integrals have an error of at most {float(LARGEST_ERROR):g}, got a "
-                f"larger error, because large terms cancel; reduce the number of triangles, {len(surface.triangles)}"
+                "larger error, because large terms cancel; reduce the number of triangles from "
+                f"{len(surface.triangles)}"
             )
         moments = exact_moments(surface, degree)
         _require_volume(moments, unit, where)
@@ -197,7 +198,10 @@ def _degree(node: Any, source: object, unit: Fraction, where: str) -> int:
 
 
 def _integrated(moments: VolumeMoments, node: Any, source: object, unit: Fraction, where: str) -> _Body:
-    """Return the moments of a density (kg, kg m, kg m^2) from the integrals ``moments`` of monomials of coordinates."""
+    """Return mass, first and second moments (kg, kg m, kg m^2) of a mesh body with the density formula ``node``.
+
+    They follow from ``moments``, the integrals of monomials of the coordinates over the mesh.
+    """
     # local coordinates start from a centre and are in the file's unit of length
     axes = {
         name: (generator(name) + constant(middle)) * unit for name, middle in zip("xyz", moments.center, strict=True)

@@ -56,8 +56,8 @@ def read_surface(path: Path, where: str) -> Surface:
         if mesh is None and suffix == ".obj" and refers_backwards(content):
             # trimesh counts them from the end of the file
             raise InputError(
-                "expected positive numbers of vertices in an OBJ file whose lines differ in form, got a line such as "
-                "f -3 -2 -1; save the mesh again with positive numbers or with triangles alone"
+                "expected positive vertex indices in an OBJ file whose lines do not all have the same form, got a line "
+                "such as f -3 -2 -1; save the mesh again with positive indices or with triangles alone"
             )
         if mesh is None:
             trimesh, facts = _trimesh(), FACTS_OF[suffix](content)

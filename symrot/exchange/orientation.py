@@ -27,7 +27,10 @@ class Angles(NamedTuple):
     sequence: str = "xyz"
 
     def angle(self, value: Fraction) -> Angle:
-        """Return the exact angle that a number of the file, in degrees or rad, means; 90 degrees is exactly pi/2."""
+        """Return the exact angle for a number in a robot file: in degrees if ``degrees`` is true, otherwise in rad.
+
+        90 degrees is exactly pi/2.
+        """
         return Angle(Fraction(0), value / 180) if self.degrees else Angle(value, Fraction(0))
 
 

@@ -244,8 +244,7 @@ def _inertial(element: Element, reason: str) -> Element:
 def _require_known(element: Element, attributes: Collection[str], children: Collection[str]) -> None:
     """Raise InputError if ``element`` has an attribute, or a child element, that its format does not define.
 
-    A part with an unknown name would be ignored: a rotation whose name another version of the format defines, or a mass
-    as an attribute.
+    The reader would ignore such a part, for example a rotation under a name from another version of the format.
     """
     for kind, names, known in (
         ("attributes", element.keys(), attributes), ("elements", [child.tag for child in element], children)
@@ -304,7 +303,7 @@ def _read_urdf(element: Element, root: Element) -> Inertial:
 
 
 def _read_sdf(element: Element, root: Element) -> Inertial:
-    inertial = _inertial(element, "; SDF then assumes 1 kg and 1 kg m^2, which is no measurement")
+    inertial = _inertial(element, "; SDF then assumes 1 kg and 1 kg m^2, which are not measured values")
     _require_known(inertial, ("auto",), ("pose", "mass", "inertia", "density", "fluid_added_mass"))
     if _flag(inertial.get("auto", "false"), "inertial.auto"):
         raise InputError("inertial: expected a mass and a tensor, got auto, which leaves both to the simulator")
@@ -351,9 +350,9 @@ _CHANGING = {
     "inertiafromgeom": ("auto", "false"), "balanceinertia": ("false",), "fusestatic": ("false",),
     "coordinate": ("local",), "boundmass": ("0",), "boundinertia": ("0",), "settotalmass": ("-1",),
 }  # fmt: skip
-"""Attribute of <compiler> with which MuJoCo may change inertials -> values with which MuJoCo does not.
+"""Attribute of <compiler> that may make MuJoCo change inertials -> values for which MuJoCo leaves inertials unchanged.
 
-A number has an effect if it is positive.
+For a numerical attribute these are all values that are not positive, of which one is listed.
 """
 
 
@@ -421,4 +420,4 @@ FORMATS = {
     "sdf": Format("SDF", "link", ".//model/link", _read_sdf, ".//state//link"),
     "mujoco": Format("MJCF", "body", "worldbody//body", _read_mjcf),
 }
-"""Tag of the root element -> format."""
+"""Tag of the XML root element of a robot file -> format of the file."""

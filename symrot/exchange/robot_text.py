@@ -1,4 +1,4 @@
-"""Writing of a link's inertial: its XML text in principal form, and the replacement of the old text in a robot file."""
+"""Writing of a link's inertial to a robot file: XML text with principal axes and a diagonal tensor replaces the old."""
 
 from collections.abc import Callable
 from fractions import Fraction
@@ -90,7 +90,7 @@ def _require_same(form: Format, result: bytes, name: str, inertial: Inertial, wh
     ]
     if any(abs(x - y) > scale * ROUNDING for x, y, scale in pairs):
         raise InputError(
-            f"{where}: link {show(name)}: the new <inertial> would be read with other values than those computed, "
+            f"{where}: link {show(name)}: the new <inertial> would be read with values other than those computed, "
             "because other parts of the file change it; no file was written"
         )
 
@@ -106,7 +106,7 @@ def _is_utf8(content: bytes) -> bool:
 
 
 def inertial_text(inertial: Inertial, form: str) -> str:
-    """Return the element ``<inertial>`` in principal form.
+    """Return the XML element ``<inertial>`` of a link, with principal axes and a diagonal tensor.
 
     Parameters
     ----------

@@ -25,7 +25,7 @@ DRAWS = 24
 """Number of times that random numbers are chosen for an exercise; the choice with the shortest answers is used."""
 
 MOST_DRAWS = 10_000
-"""Largest number of random choices, if none of the first :data:`DRAWS` suits the problem; then ProofError is raised."""
+"""Number of random choices after which ProofError is raised, if none of them suits the problem."""
 
 ZERO = 30
 """Number of digits that an answer of zero counts as, so that such answers, which teach little, are rare."""

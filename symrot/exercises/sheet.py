@@ -69,8 +69,9 @@ class ExerciseSheet:
         Raises
         ------
         InputError
-            For an unknown format, if both ``solutions`` and ``statements`` are false, and if a sheet for Moodle or as
-            JSON, which always has both, is to have a title or only one of them.
+            If the format is unknown, or if both ``solutions`` and ``statements`` are false. For the formats
+            ``"moodle"`` and ``"json"``, also if a title is given or one of the two is false: these formats have no
+            title, and always statements and solutions.
         """
         from symrot.exercises.formats import FORMATS, HANDOUTS, TITLE
 

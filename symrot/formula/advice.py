@@ -77,9 +77,9 @@ NAMES = {word: write for write, words in _NAMES.items() for word in words.split(
 
 _EQUAL = "a formula that varies equals a number only at single instants"
 MARKS = {
-    "%": "mod(a, b) for a % b", "^": "** for a power", "&": "and between conditions",
-    "|": "or between conditions, abs(u) for |u|", "!": f"not before a condition; {_EQUAL}",
-    "~": "not before a condition", "=": f"< or > with a number on each side: {_EQUAL}",
+    "%": "mod(a, b) for a % b", "^": "** for a power", "&": "'and' between conditions",
+    "|": "'or' between conditions, and abs(u) for |u|", "!": f"'not' before a condition; {_EQUAL}",
+    "~": "'not' before a condition", "=": f"< or > with a number on each side: {_EQUAL}",
     "[": "omega_1, omega_2, omega_3 or q0 .. q3 for one component", "{": "round brackets",
     ".": "functions without np. or math. before them", ":": "where(condition, a, b)", "?": "where(condition, a, b)",
     ";": "one formula alone", "π": "pi", "²": "**2", "³": "**3", "−": "-", "–": "-", "·": "*", "×": "*", "÷": "/",

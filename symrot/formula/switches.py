@@ -164,7 +164,10 @@ def on_line(node: Node) -> tuple[Any, int]:
 
 
 def between_sides(node: Node, mode: str) -> Node:
-    """Return a formula that is linear in a mode and equals the formula ``node`` if the mode is 1 or -1."""
+    """Return a formula that is linear in the symbol ``mode`` and equals ``node`` if the symbol is 1 or -1.
+
+    A mode stands for the sign of a formula, such as that in ``sign(u)``.
+    """
     # a motion that slides along a switch has a mean of the rates on both sides (A. F. Filippov), linear in the mode
     if _is_linear(node, mode):
         return node
@@ -262,9 +265,10 @@ class _Writer:
         self.conditions: Conditions = ()  # conditions under which the part being rewritten applies
 
     def mode(self, kind: str, guard: Node, where: Conditions = (), at_zero: int = 1) -> Node:
-        """Return the mode of a switch as a symbol; for a new guard, add the :class:`Switch`.
+        """Return the symbol (mode) that stands for the sign or the floor of the formula ``guard``.
 
-        The arguments are the fields of :class:`Switch`; ``where`` is added to the conditions that hold already.
+        If there is none yet, a :class:`Switch` is added to ``switches``. The arguments are the fields of
+        :class:`Switch`; ``where`` is added to the conditions under which the part being rewritten applies.
         """
         where = self.conditions + where
         for count in range(len(where) + 1):  # a mode that applies under fewer of the conditions serves as well
@@ -278,8 +282,8 @@ class _Writer:
     def branch(self, node: Node, indicator: Node, value: int) -> Node:
         """Return ``node``, the a or b of ``where(c, a, b)``, as a smooth formula.
 
-        The switches in the node get the condition that ``indicator``, a formula that is 1 where c holds and else 0, has
-        the ``value``: 1 for a, 0 for b.
+        ``indicator`` is a formula that is 1 where c holds and 0 elsewhere. Each new switch (jump or kink) in the node
+        is limited to the points where the indicator has the ``value``: 1 for a, 0 for b.
         """
         outside = self.conditions
         self.conditions = (*outside, (indicator, value))
@@ -370,7 +374,7 @@ class _Writer:
 
 
 def _difference(a: Node, b: Node) -> Node:
-    """Return the formula a - b, shortened to a if b is 0, so that equal guards have equal formulas."""
+    """Return the formula a - b, or a if b is 0: ``u > 0`` then switches with the same formula u as ``sign(u)``."""
     return a if b == ("number", 0) else ("-", a, b)
 
 

@@ -67,7 +67,7 @@ def uniform(
     values = scalars(shape, dimensions) | {"pi": PI}
     measure = abs(Fraction(evaluate(forms["measure"], values)))  # the order of the corners determines its sign
     if not measure:
-        raise InputError(f"{prefix(where)}expected a {shape.name} that fills space, got corners in one plane")
+        raise InputError(f"{prefix(where)}expected a {shape.name} with a positive volume, got corners in one plane")
     total = mass if density is None else density * measure
     assert total is not None
     properties = {key: Fraction(evaluate(form, {**values, "m": total})) for key, form in forms.items()}

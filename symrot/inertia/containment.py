@@ -18,7 +18,11 @@ __all__ = ["are_apart", "excess", "is_convex", "outside"]
 # --- walls ------------------------------------------------------------------------------------------------------------
 
 Wall = Callable[[list[Piece]], float]
-"""A function that returns by how much a hull, given by its pieces, reaches beyond a wall, m; at most 0 if inside."""
+"""A function that returns by how much a convex hull reaches beyond a wall, such as the plane of a face, m.
+
+Its argument is the list of the disks, domes and ellipsoids (pieces) that span the hull. The result is at most 0 if the
+hull does not reach beyond the wall.
+"""
 
 
 def _plane(normal: Vec, limit: float) -> Wall:
@@ -69,7 +73,7 @@ def _flat(*walls: Wall) -> list[Wall]:
 
 
 def _slabs(*limits: tuple[int, float]) -> list[Wall]:
-    """Return pairs of parallel walls; each pair is given by its normal, the axis 0, 1 or 2, and its distance from 0."""
+    """Return pairs of parallel planes; each pair is given by (axis 0, 1 or 2 normal to it, its distance from 0)."""
     return [_plane(normal, limit) for axis, limit in limits for normal in (AXES[axis], opposite(AXES[axis]))]
 
 
@@ -130,7 +134,7 @@ def _relative(inner: Solid3, outer: Solid3) -> hulls.Pose:
 def outside(inner: Solid3, outer: Solid3) -> float:
     """Return an upper bound of the length by which ``inner`` reaches out of ``outer``, m; at most 0 if it lies inside.
 
-    It is infinite if ``outer`` is a surface or curve that this module has no walls for.
+    The bound is infinite if ``outer`` is a spherical shell or a ring, and another shape than ``inner``.
     """
     if inner == outer:
         return 0.0

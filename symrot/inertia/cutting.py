@@ -51,5 +51,5 @@ def _corners(points: list[Vec], normal: Vec) -> list[Vec]:
 
 
 def _is_right(a: Vec, b: Vec, c: Vec, i: int, j: int) -> bool:
-    """Return whether c is to the right of the line from a to b, or on it."""
+    """Return whether c is to the right of the line from a to b, or on it, in a drawing of coordinates ``i``, ``j``."""
     return (b[i] - a[i]) * (c[j] - a[j]) <= (b[j] - a[j]) * (c[i] - a[i])

@@ -24,14 +24,14 @@ from symrot.inertia.tensor import dot
 __all__ = ["DensePart", "PointMass", "dense_part", "doubtful_holes", "pose", "require_points"]
 
 ROUNDING = 1e-9
-"""Length by which a hole may reach out of a part, relative to the radius of the ball around the hole.
+"""Length by which a hole (a part that is subtracted) may reach out of the other parts, relative to the hole's radius.
 
-Dimensions are rounded numbers."""
+The radius is that of a ball around the hole. Rounded dimensions may make an exact fit reach out so little."""
 
 DENSITY = 0.01
 """Largest accepted excess of the density of a hole over that of the parts around it, relative to the parts' density.
 
-Masses are rounded numbers."""
+Users state rounded masses, so that equal densities may differ by so much."""
 
 SHARES = (0.001, 0.25, 0.5, 0.75, 0.999)  # of the coordinates of a hole, at test points
 INWARDS = 1e-6  # share of the way from the end of a hole to its middle, at test points
@@ -42,13 +42,13 @@ PointMass = tuple[Any, Sequence[Any]]  # mass, kg; position in the axes of the b
 
 
 class DensePart(NamedTuple):
-    """A part of a body, for the test of its holes: its shape, position and density, and whether it is subtracted."""
+    """A part of a body, as the tests of holes need it: shape, position, density, and whether the part is a hole."""
 
     solid: hulls.Solid3
     exact_dimensions: Mapping[str, Any]
     # kg/m^3, kg/m^2 or kg/m: a number, or a polynomial in x, y, z
     density: Fraction | Node
-    subtract: bool
+    subtract: bool  # whether the part is a hole
 
     @property
     def kind(self) -> str:
@@ -120,14 +120,14 @@ def doubtful_holes(parts: Sequence[DensePart | None], names: Sequence[str]) -> t
         if _is_covered(hole, near, radius):
             continue
         doubts.append(
-            f"{name}: whether this hole lies within parts of at least its density could not be decided; where it does "
-            "not, the body has a negative density"
+            f"{name}: whether this hole lies within parts at least as dense as the material it removes could not be "
+            "decided; where it does not, the body has a negative density"
         )
     return tuple(doubts)
 
 
 def _is_within(hole: DensePart, near: Sequence[DensePart], radius: float) -> bool:
-    """Return whether the density of the body is proven to be nowhere negative in a hole.
+    """Return whether it is proven that the body has no negative density in a hole (a part that is subtracted).
 
     ``near`` are the other parts that may touch the hole; ``radius`` is that of a ball around the hole, m. The hole is
     tested as a whole, then in pieces (:func:`_pieces`).
@@ -182,9 +182,10 @@ def _crosses(plane: tuple[Vec, float], points: Sequence[Vec], rounding: float) -
 
 
 def _carry(parts: Sequence[DensePart], holes: Sequence[DensePart]) -> bool:
-    """Return whether the sum of the densities of ``parts``, which overlap, is at least the sum of those of ``holes``.
+    """Return whether the densities of ``parts`` certainly add up to at least the sum of the densities of ``holes``.
 
-    One per cent less is allowed (:data:`DENSITY`).
+    All of them overlap; one per cent less is allowed (:data:`DENSITY`). A part whose density is a polynomial counts
+    only for a single hole with the same polynomial and position.
     """
     filled = sum(part.density for part in parts if isinstance(part.density, Fraction))
     emptied = Fraction(0)
@@ -202,7 +203,10 @@ _CUT = {
     "hollow_cylinder": (("length", 2),),
     "triangular_prism": (("length", 2),),
 }
-"""Shape that planes cut into shapes of its own kind -> the dimensions that are cut, each with its axis 0, 1 or 2."""
+"""Shape of a hole -> pairs (name of a dimension, its axis 0, 1 or 2) along which the hole may be cut into pieces.
+
+Planes normal to these axes cut a box into boxes, and a cylinder into cylinders.
+"""
 
 
 def _pieces(hole: hulls.Solid3, hosts: Sequence[hulls.Solid3]) -> list[hulls.Solid3]:
@@ -258,7 +262,7 @@ def _refuse_negative(hole: DensePart, near: Sequence[DensePart], radius: float, 
             elif holes and filled >= own * (1 - DENSITY):
                 fault = f"one that overlaps another hole, at ({place}) m in the axes of the body"
             else:
-                fault = f"a density of {own:.6g} {unit} where they have {filled:.6g} {unit}, at ({place}) m"
+                fault = f"a density of {own:.6g} {unit} where the other parts have {filled:.6g} {unit}, at ({place}) m"
             raise InputError(f"{name}: expected a hole within the other parts, got {fault}")
 
 
@@ -285,12 +289,12 @@ def require_points(added: Sequence[PointMass], subtracted: Sequence[tuple[str, P
     ``subtracted`` are pairs of the place in the scene, for messages, and the point mass.
     """
     size = max((math.hypot(*map(float, point)) for _, (_, point) in subtracted), default=0.0)
-    for name, (mass, point) in subtracted:
+    for name, (_, point) in subtracted:
         there = sum(float(own) for own, other in added if math.dist(point, other) <= ROUNDING * size)
         gone = sum(float(own) for _, (own, other) in subtracted if math.dist(point, other) <= ROUNDING * size)
         if gone > there * (1 + DENSITY):
             place = ", ".join(f"{float(x):.6g}" for x in point)
             raise InputError(
-                f"{name}: expected point masses to subtract that other point masses have at the same points, got "
-                f"{float(mass):.6g} kg at ({place}) m in the axes of the body, where they have {there:.6g} kg"
+                f"{name}: expected no more mass to subtract at a point than the other point masses have there, got "
+                f"{gone:.6g} kg to subtract from {there:.6g} kg at ({place}) m in the axes of the body"
             )

@@ -203,7 +203,7 @@ def _farthest_along(piece: Piece, direction: Vec) -> Vec:
 
 
 def farthest(solid: Solid3, direction: Vec) -> Vec:
-    """Return the point of a shape that is farthest along a unit vector ``direction``, both in the axes of the body."""
+    """Return a point of a shape's convex hull that is farthest along the unit vector ``direction``, in body axes."""
     points = [_farthest_along(piece, direction) for piece in solid.hull]
     return max(points, key=lambda point: dot(point, direction))
 
@@ -242,7 +242,7 @@ def _across(axis: Vec) -> Vec:
 
 
 def polygon_around(disk: Disk) -> list[Vec]:
-    """Return the corners of a polygon around a flat disk; the radius of the ball in ``disk`` is not used.
+    """Return the corners of a polygon that contains the flat disk, without the ball that inflates it (:class:`Disk`).
 
     For a disk of radius 0, the only corner is its centre.
     """
@@ -284,7 +284,10 @@ def _combined(center: Vec, axes: tuple[Vec, Vec, Vec], shares: Vec, factor: floa
 
 @cache
 def _ball() -> list[Vec]:
-    """Return the corners of a polyhedron that contains the ball of radius 1; the equator z = 0 has corners."""
+    """Return the corners of a polyhedron that contains the ball of radius 1.
+
+    Some corners have z = 0, so that the corners with z >= 0 are those of a polyhedron around half the ball.
+    """
     # the planes of its faces are nearer to the centre than the corners by the cosines of half their two angles
     step = math.pi / MERIDIANS
     radius = 1 / math.cos(step) ** 2

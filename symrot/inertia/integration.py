@@ -212,10 +212,10 @@ def moments(region: Domain, density: Polynomial | None = None) -> Moments:
 
 
 def moments_per_measure(region: Domain, density: Polynomial | None = None) -> tuple[Polynomial, Moments]:
-    """Return a factor and the moments of a shape divided by this factor.
+    """Return (factor, moments): the moments of a shape are the product of the factor and these moments.
 
-    The factor is the measure of the shape (its volume, area or length) if the Jacobian is divisible by it, otherwise 1.
-    Dividing before the integration saves time for a tetrahedron with twelve symbols.
+    The factor is the measure of the shape (volume, area or length) if ``region.jacobian`` is divisible by it as a
+    polynomial, otherwise 1. Dividing before the integration saves time for a tetrahedron with twelve symbols.
     """
     measure = integrate(region.jacobian, region.limits)
     share = exact_quotient(region.jacobian, measure)
@@ -273,7 +273,7 @@ def exact_moments(
     region = domain(shape, numbers)
     measure = integrate(region.jacobian, region.limits).value(_PI)
     if not measure:
-        raise InputError(f"{prefix(where)}expected a {shape.name} that fills space, got corners in one plane")
+        raise InputError(f"{prefix(where)}expected a {shape.name} with a positive volume, got corners in one plane")
     if measure < 0:  # corners in the other order
         region = region._replace(jacobian=-region.jacobian)
     values = dict(zip("xyz", region.position, strict=True))

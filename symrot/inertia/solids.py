@@ -108,7 +108,7 @@ class Solid:
 
     @property
     def shape(self) -> Shape:
-        """The row of the table of shapes for this body: its dimensions, map, limits and axes."""
+        """The row of the table of shapes for this body: dimensions, axes, and the map from coordinates to positions."""
         return SHAPES[self.name]
 
     @property
@@ -365,7 +365,7 @@ def solid(name: str, *, mass: Any = None, density: Any = None, **dimensions: Any
     chosen = {symbol: values[key] for key, symbol in defaults.items() if values[key] != symbol}
     measure = _tidy_measure(measure.xreplace(chosen)) if chosen else measure
     if measure.is_zero:
-        raise InputError(f"expected a {name} that fills space, got corners in one plane")
+        raise InputError(f"expected a {name} with a positive volume, got corners in one plane")
     if measure.is_negative:  # the same tetrahedron with its corners in the opposite order
         return solid(name, mass=mass, density=density, vertices=[dimensions["vertices"][n] for n in (0, 1, 3, 2)])
     if density is None:

@@ -33,7 +33,7 @@ class Law:
 
 @dataclass(frozen=True)
 class Definition:
-    """A kernel of the library as symrot derives it: arguments, formulas, their domain, their laws and their source."""
+    """A kernel of the library as symrot derives it: arguments, formulas, domain, laws that its outputs satisfy."""
 
     name: str
     title: str

@@ -157,8 +157,9 @@ def _is_multiple_of_symbol(expr: Expr) -> bool:
 
 
 def _with_sinc(expr: Expr, symbol: Symbol, partial: Expr) -> Expr:
-    """Return ``partial``, the derivative of ``expr`` by a root, with sine as sinc: ``-sin(angle)`` becomes
-    ``-angle*sinc(angle)``.
+    """Return ``partial``, the derivative of ``expr`` with respect to ``symbol``, with sines written as sinc.
+
+    The symbol stands for a square root, such as an angle ``|v|``: ``-sin(angle)`` becomes ``-angle*sinc(angle)``.
     """
     # The caller multiplies by the root's derivative v_i/angle, which has no value at angle = 0; now the angle cancels.
     angles = [call.args[0] for call in expr.atoms(cos) if symbol in call.free_symbols]

@@ -167,10 +167,10 @@ def _heavy_top(name: str, body: str) -> Definition:
 
 
 def _weighed(center: Matrix) -> tuple[Matrix, Named]:
-    """Return (vector, definitions): the vector 2 W r as three symbols, and pairs (symbol, formula) that define them.
+    """Return (vector, definitions); the torque of the weight is the cross product of half the unit vertical and vector.
 
-    W is the weight and r = ``center`` the centre of mass from the fixed point; a component that is zero stays 0. The
-    torque is the cross product of half the unit vertical with this vector.
+    The vector is 2 W r, with the weight W and the centre of mass r = ``center`` from the fixed point. Each component is
+    a new symbol, or 0 if r has a zero; the definitions are pairs (symbol, formula).
     """
     # half the vertical takes fewer operations than the vertical
     components = [symbol if c else c for symbol, c in zip(_symbols("moment_of_weight"), center, strict=True)]

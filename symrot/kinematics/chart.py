@@ -175,7 +175,7 @@ class Limit:
 
 @dataclass(frozen=True)
 class RateFacts:
-    """What a :class:`RateMatrix` knows besides its entries: frame, parameters, determinant, inverse."""
+    """The properties of a :class:`RateMatrix` besides its entries: frame, parameters, determinant, inverse."""
 
     name: str
     frame: str
@@ -222,7 +222,7 @@ class RateMatrix(ImmutableDenseMatrix):  # type: ignore[misc]
     facts: RateFacts
 
     def __new__(cls, *args: Any, **kwargs: Any) -> Any:
-        """Return a plain matrix of the entries; :meth:`build` makes rate matrices."""
+        """Return a plain immutable matrix with the given entries; only :meth:`build` makes a RateMatrix."""
         # SymPy rebuilds a matrix with func(*args) after each operation; the stored inverse and determinant would be
         # wrong for the new entries.
         return ImmutableDenseMatrix(*args, **kwargs)

@@ -113,7 +113,7 @@ class SingularityDossier:
         kind = "intrinsic" if parse_sequence(self.sequence)[1] else "extrinsic"
         return "\n".join(
             [
-                f"Singularity dossier of the {kind} Euler sequence {self.sequence}, angles phi, theta, psi",
+                f"Singularities of the {kind} Euler sequence {self.sequence}, angles phi, theta, psi",
                 "",
                 f"det B             {self.determinant}",
                 f"singular          {self.singular_set}",

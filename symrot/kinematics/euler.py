@@ -49,8 +49,9 @@ __all__ = [
 
 @dataclass(frozen=True)
 class Factor:
-    """One of the three rotations whose product is ``dcm_sb``: its axis, its angle, and the index of the angle,
-    0 to 2.
+    """One of the three rotations whose product is ``dcm_sb``, the rotation from body to space.
+
+    The fields are its axis (0 to 2), its angle (rad), and the index of the angle, 0 to 2.
     """
 
     axis: int
@@ -68,7 +69,7 @@ class Factor:
 
 
 def factors(sequence: str, angles: Sequence[Any] | None = None) -> tuple[Factor, Factor, Factor]:
-    """Return the three elementary rotations whose product from left to right is ``dcm_sb``.
+    """Return the three elementary rotations whose product, from left to right, is the rotation from body to space.
 
     Parameters
     ----------

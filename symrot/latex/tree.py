@@ -73,7 +73,7 @@ class Fraction:
 
 @dataclass(frozen=True)
 class Root:
-    """A root; ``index`` is None for a square root."""
+    """A root, ``\\sqrt[n]{x}``: ``index`` is the row n, or None for a square root, and ``inside`` is x."""
 
     index: Row | None
     inside: "Node"

@@ -27,8 +27,8 @@ LESSONS = {
             "Students add angular momenta and then square the sum, instead of adding squares.",
             "T == (A*omega_1 + C*omega_3)**2/(2*(A + C))",
             facts=("T == A*omega_1**2/2 + C*omega_3**2/2", "A > 0", "C > 0"),
-            lesson="The energies of rotation about the principal axes add; there is no common moment for the sum of "
-            "the angular velocities.",
+            lesson="The energies of rotation about the principal axes add; no single moment of inertia applies to "
+            "the sum of the angular velocities.",
         ),
         scene="t_handle",
         numbers=(

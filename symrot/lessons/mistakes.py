@@ -46,11 +46,11 @@ def mistake_passages(mistake: Mistake) -> Iterator[Passage]:
     facts = _facts(mistake.facts)
     sentences = [f"{facts} The checker refutes it by a counterexample, `{verdict.counterexample}`.".strip()]
     if verdict.requires:
-        sentences.append(f"It holds only if `{' or '.join(verdict.requires)}`.")
+        sentences.append(f"The claim holds only if `{' or '.join(verdict.requires)}`.")
     elif verdict.diagnosis.code != "none":
         sentences.append(f"Its diagnosis: {verdict.diagnosis.text}.")
     if mistake.repair is not None and verdict.repairs:
-        sentences.append(f"A formula near it, which the checker proves: `{verdict.repairs[mistake.repair].text}`.")
+        sentences.append(f"A similar formula, which the checker proves: `{verdict.repairs[mistake.repair].text}`.")
     yield Passage(" ".join([*sentences, mistake.lesson]).strip())
     options = "".join(f" --given {quote(text)}" for text in mistake.facts)
     yield Passage(f"Try it: `symrot check {quote(mistake.claim)}{options}`.")

@@ -66,7 +66,10 @@ def _exact(value: Fraction) -> Rational:
 
 
 def _of_torque(torque: Torque) -> dict[Expr, Expr]:
-    """Return the constants of a torque by the symbols of derivations; empty for a torque without such symbols."""
+    """Return a map from symbols that derivations use for constants of a torque, such as W, to their exact values.
+
+    It is empty if derivations have no symbols for the torque.
+    """
     vectors = {
         ("constant_body", "torque"): symbols.torque_b,
         ("rotor", "angular_momentum"): symbols.rotor,

@@ -63,7 +63,7 @@ def switching_function(scene: Scene) -> str:
 
 
 def general_structure(scene: Scene, switched: bool = False) -> Structure:
-    """Return the structure of a scene that assumes nothing: full inertia tensor, free constants, full attitude.
+    """Return the most general structure of a scene: full inertia tensor, constants of any value, full attitude.
 
     If ``switched``, each function with a jump or kink in a torque formula becomes a constant, its mode, such as 1 for
     ``sign(omega_3)`` while omega_3 > 0.
@@ -74,7 +74,10 @@ def general_structure(scene: Scene, switched: bool = False) -> Structure:
 
 
 def _general_torque(number: int, torque: Torque, known: set[str], switched: bool) -> TorqueStructure:
-    """Return the structure of torque ``number``, all constants free; the constants' names are added to ``known``."""
+    """Return what the most general equations assume about torque ``number``: each constant may have any value.
+
+    The names of the constants are added to ``known``.
+    """
     if torque.formulas:
         general = _formula_torque(torque, switched)
         prefix = _prefix(number, list(general.parameters), known)
@@ -87,9 +90,10 @@ def _general_torque(number: int, torque: Torque, known: set[str], switched: bool
 
 
 def _formula_torque(torque: Torque, switched: bool) -> FormulaTorque:
-    """Return the structure of a torque given by formulas; its constants have the same names as in the scene.
+    """Return what the equations assume about a torque given by formulas: each constant may have any value.
 
-    If ``switched``, functions that jump, such as sign, become constants (modes).
+    The constants have the same names as in the scene. If ``switched``, functions that jump, such as sign, become
+    further constants (modes).
     """
     formulas, parameters, frame = torque.formulas, tuple(torque.values), torque.frame
     if not (switched and any(has_switches(expression.parse(text, switching=True)) for text in formulas)):

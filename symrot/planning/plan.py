@@ -31,7 +31,7 @@ __all__ = ["START_CONSTANTS", "STATES", "Plan", "make_plan", "structure_key"]
 
 ZERO, FREE = Pattern.ZERO, Pattern.FREE  # a global name is looked up faster than a member of an Enum
 START_CONSTANTS = frozenset({f"omega_{i}" for i in (1, 2, 3)} | {f"initial_q{i}" for i in range(4)})
-"""The constants of a structure that are numbers of the initial state; all others belong to body and torques."""
+"""Names of constants in equations that are numbers of the initial state; all other constants are of body or torques."""
 STATES = (*switches.STATES, "theta")
 
 
@@ -133,11 +133,11 @@ class Plan:
 
     @cached_property
     def _places(self) -> tuple[int, ...]:
-        """The index in :data:`STATES` (all possible states: omega, quaternion, theta) of each state of the plan."""
+        """For each state of the plan, its index in :data:`STATES`, the list of all possible states."""
         return tuple([STATES.index(name) for name in self.states])
 
     def from_start(self, initial: Initial) -> "Plan":
-        """Return the plan for another initial state, with the same equations and other numbers.
+        """Return a plan with the same equations for another initial state of the scene.
 
         To save time, the rules that simplify the equations are not applied again. The state must have the same
         :func:`structure_key`; this is not checked.
@@ -159,7 +159,7 @@ class Plan:
 def make_plan(
     scene: Scene, initial: Initial | None = None, external_torque: bool = False, switched: bool = False
 ) -> Plan:
-    """Return the plan of a scene, or of the scene with another initial state.
+    """Return the plan of a scene: the smallest set of equations that gives its output, and the constants in them.
 
     Parameters
     ----------
@@ -205,7 +205,7 @@ def make_plan(
 
 
 def structure_key(scene: Scene, initial: Initial) -> Hashable:
-    """Return a key of an initial state; states of a scene with equal keys have plans that differ only in numbers."""
+    """Return a key of an initial state; with equal keys, the equations of a scene differ only in numbers."""
     # A propagator keeps one prepared motion for each key.
     rotates_about = tuple([x.numerator != 0 for x in initial.omega_b])
     if rotates_about.count(True) > 1:

@@ -44,14 +44,17 @@ UNIT_FIELDS = ("direction", "attitude")  # fields in which a component equal to 
 
 
 class RuleOutcome(NamedTuple):
-    """The decision of one rule of a plan; the explanation of a plan contains one line for each decision.
+    """The decision of one rule that may simplify the equations of a scene, with its reason.
+
+    The explanation of a plan contains one line for each decision.
 
     Attributes
     ----------
     structure : Structure
         The structure after the rule.
     skipped : bool
-        Whether the rule simplifies the equations: it removes a term or a state, or replaces a constant by a number.
+        Whether the rule applies, so that the equations skip something: a term, a state, or a constant that a number
+        replaces.
     why : str
         The reason for the decision.
     derivation : str
@@ -333,7 +336,7 @@ RULES: tuple[tuple[str, Callable[[Scene, Structure], RuleOutcome]], ...] = (
 
 
 def _whole_motion(scene: Scene, structure: Structure) -> RuleOutcome:
-    why = "a torque without a formula may depend on it, and on all components of omega"
+    why = "a torque without a formula may depend on the attitude and on all components of omega"
     return RuleOutcome(structure, False, why)
 
 

@@ -363,7 +363,10 @@ def _tidied(conditions: Sequence[Any]) -> list[Any]:
 
 
 def _factors(expression: Expr) -> list[Expr]:
-    """Return the factors of a polynomial: ``[x, x + 1]`` for ``x**2 + x``, or ``[expression]`` if it has no other."""
+    """Return the factors of a polynomial: ``[x, x + 1]`` for ``x**2 + x``.
+
+    The result is ``[expression]`` if the expression is not a product of several factors, or no polynomial.
+    """
     plain = not expression.is_number and expression.is_polynomial(*expression.free_symbols)
     factors = [base for base, _ in factor_list(expression)[1]] if plain else []
     return factors if len(factors) > 1 else [expression]

@@ -1,8 +1,8 @@
 """Numerical values of the parameters of kernels, for many initial states of one scene.
 
 A kernel is the generated code for the rates (time derivatives) of the states or for the output quantities. Its
-parameters are formulas such as ``(B - C)/A``. Only those that contain a number of the initial state are evaluated
-again for another state.
+parameters are formulas such as ``(B - C)/A``. For another state, only formulas that contain a number of the initial
+state are evaluated again.
 """
 
 from collections.abc import Callable, Mapping
@@ -33,7 +33,10 @@ def two_doubles(top: int, bottom: int) -> tuple[float, ...]:
 
 
 class Binding:
-    """Function that takes a plan, with any initial state, and returns the values of a kernel's parameters as doubles.
+    """Function that takes a plan (the equations of a scene) and returns the values of a kernel's parameters.
+
+    The plan may have any initial state: only formulas that contain numbers of the initial state are evaluated again.
+    The values are doubles.
 
     Parameters
     ----------
@@ -74,7 +77,10 @@ class Binding:
         ]
 
     def __call__(self, plan: Plan) -> list[float]:
-        """Return the parameter values for ``plan``, a plan of the same scene with any initial state."""
+        """Return the parameters for ``plan``, which may differ from the plan passed first in its initial state only.
+
+        The doubles follow in the order of the parameters, as many for each as the function ``rounded`` returns.
+        """
         numbers = self._numbers.copy()
         if self._moving:
             constants = plan.start_constants

@@ -68,7 +68,10 @@ def _version() -> str:
 
 
 def kernel_key(plan: Plan) -> str:
-    """Return the key under which the cache stores the kernel of a plan; plans with equal structures share it."""
+    """Return the key under which the cache stores the kernel of a plan (generated code for the equations of a scene).
+
+    Plans with equal structures share the key.
+    """
     return f"scene kernel\n{_structure_text(plan.structure)}\n{_version()}"
 
 
@@ -78,7 +81,7 @@ def _structure_text(structure: Structure) -> str:
 
 
 def scene_kernel(plan: Plan, on_rates: Callable[[Program, str], object] = lambda rates, source: None) -> SceneKernel:
-    """Return the kernel of a plan, from the cache or newly derived.
+    """Return the kernel of a plan (generated code for the equations of a scene), from the cache or newly derived.
 
     ``on_rates(program, c_text)`` is called as soon as the rates are derived, before the conserved quantities are; it is
     not called for a kernel from the cache.
@@ -95,7 +98,9 @@ def scene_kernel(plan: Plan, on_rates: Callable[[Program, str], object] = lambda
 
 
 def compiled(plan: Plan) -> tuple[SceneKernel, Path]:
-    """Return the kernel of a plan, and the path of the compiled library of the kernel and its stepper, DOP853.
+    """Return the kernel of a plan (generated code for the equations of a scene), and the path of its compiled library.
+
+    The library contains the kernel and its stepper, DOP853.
 
     Raises
     ------
@@ -123,14 +128,18 @@ def _parameter_count(rates: Program) -> int:
 
 
 def motion_library(plan: Plan, kernel: SceneKernel) -> Path:
-    """Return the path of the library that integrates the motion of a plan by DOP853; compile it unless it is cached."""
+    """Return the path of the library that integrates a scene's motion by DOP853; ``plan`` has the equations.
+
+    The library is compiled unless it is cached.
+    """
     return library.build(library_source(plan, kernel), "motion")
 
 
 def taylor_library(plan: Plan, kernel: SceneKernel, tolerance: float, projected: bool = True) -> Path:
-    """Return the path of the compiled library that integrates the motion of a plan by Taylor series.
+    """Return the path of the library that integrates a scene's motion by Taylor series; ``plan`` has the equations.
 
-    ``projected`` says whether the states are corrected every few steps, so that the conserved quantities stay constant.
+    The library is compiled unless it is cached. ``projected`` says whether the states are corrected every few steps, so
+    that the conserved quantities stay constant.
 
     Raises
     ------
@@ -161,9 +170,10 @@ def invariant_source(kernel: SceneKernel, states: Sequence[str]) -> str:
 
 
 def error_blocks(plan: Plan) -> tuple[list[int], list[float]]:
-    """Return (edges, scales) of the blocks of states: ``([0, 3, 7], [0.0, 1.0])`` for omega and quaternion.
+    """Return (edges, scales) of the blocks of states whose errors are measured separately.
 
-    The error of a block is divided by its scale, or by its norm if that is 0.
+    For the blocks omega and quaternion: ``([0, 3, 7], [0.0, 1.0])``. The error of a block is divided by its scale, or
+    by the norm of the block if the scale is 0.
     """
     rates = sum(name.startswith("omega") for name in plan.states)
     count = len(plan.states)
@@ -173,7 +183,7 @@ def error_blocks(plan: Plan) -> tuple[list[int], list[float]]:
 
 
 def library_source(plan: Plan, kernel: SceneKernel) -> str:
-    """Return the C text of the library that integrates the motion of a plan by DOP853: kernel and stepper."""
+    """Return the C text of the library that integrates a scene's motion: the kernel of the plan, and DOP853."""
     return _unit(plan, kernel.source, len(kernel.rate_parameters), lambda: kernel.rates)
 
 
@@ -185,13 +195,13 @@ def _unit(plan: Plan, source: str, parameters: int, rates: Callable[[], Program]
 
 
 def has_formulas(plan: Plan) -> bool:
-    """Return whether a torque of the plan is given by formulas."""
+    """Return whether a torque of the scene, given by its plan, has formulas."""
     # the steps then need limits, because a long step may miss a short pulse
     return any(plan.structure.formula_torques)
 
 
 def grows_late(plan: Plan) -> bool:
-    """Return whether a torque formula has degree 3 or more in time and states, such as ``t**3``."""
+    """Return whether a torque formula of the scene has degree 3 or more in time and states, such as ``t**3``."""
     # A motion from rest then starts with Taylor coefficients that are zero and hide how large it becomes: an ensemble
     # follows such motions one by one, so that each step can be checked.
     formulas = [text for torque in plan.structure.formula_torques for text in torque.formulas]
@@ -214,10 +224,10 @@ def _degree(node: Node) -> int:
 
 
 def formula_deviations(plan: Plan, kernel: SceneKernel) -> "Callable[[Mapping[str, float]], Deviations] | None":
-    """Return a function that makes bounds (:class:`Deviations`) from the values of the rates' parameters, by name.
+    """Return a function that makes bounds (:class:`Deviations`) from a map of the rates' parameters, name to value.
 
     The bounds say how far the rates can change near a time and state; with them SciPy's steps stay so short that none
-    misses a short pulse of a torque formula. Return None if no torque can have such a pulse, or if the rates have no
+    misses a short pulse of a torque formula. Return None if no torque can have a short pulse, or if the rates have no
     Taylor series.
     """
     if not has_formulas(plan):
@@ -234,7 +244,12 @@ def formula_deviations(plan: Plan, kernel: SceneKernel) -> "Callable[[Mapping[st
 
 
 def enclosure_text(plan: Plan, rates: Callable[[], Program], edges: Sequence[int]) -> str:
-    """Return C code that bounds how far the rates of a plan can change in a step, from the cache or newly generated."""
+    """Return C code that bounds how far the rates (time derivatives of the states) can change in one step.
+
+    The rates are those of the equations in ``plan``. The code comes from the cache; only if it is not there, ``rates``
+    is called for the program of the rates, and the code is generated. ``edges`` are the edges of the blocks of states
+    whose errors are measured separately.
+    """
     key = f"enclosure {DENSE_ORDER}\n{kernel_key(plan)}"
     text = library.fetch(key)
     if text is None:

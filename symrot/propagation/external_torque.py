@@ -141,12 +141,18 @@ class _Function(TorqueSource):
         return self.pointer
 
     def check(self, low: float, high: float) -> None:
-        """Clear the error of an earlier motion. No time raises InputError: the domain of the function is not known."""
+        """Clear the error that the function raised in an earlier motion.
+
+        The times ``low`` and ``high`` are not checked, because the domain of the function is not known.
+        """
         # failure() reports only exceptions from here on
         self.error = None
 
     def failure(self) -> BaseException | None:
-        """Return the error of the function, also for a result that is not three finite numbers, or None."""
+        """Return the error of the function in the last motion, or None if there was none.
+
+        A result that is not three finite numbers is an error, too.
+        """
         return self.error
 
 
@@ -172,7 +178,7 @@ class _CFunction(TorqueSource):
         return self.pointer
 
     def check(self, low: float, high: float) -> None:
-        """Do nothing: no time raises InputError, because the domain of a C function is not known."""
+        """Do nothing: the domain of a C function is not known, so that no time can be refused."""
 
     def failure(self) -> BaseException | None:
         """Return None: a C function raises no exceptions, but reports an error by its return value."""
@@ -340,7 +346,7 @@ def external_setup(
     user = 0 if source.user is None else source.user.ctypes.data
     inverse = np.linalg.inv(np.array([[float(x) for x in row] for row in plan.scene.body.inertia]))
     addresses = _bits(_address(pointer)), _bits(user)
-    kernel = scene_alone.without_invariants("changed by the torque that is no formula")
+    kernel = scene_alone.without_invariants("changed by the torque without a formula")
     warnings = () if source.samples or math.isfinite(max_step) else (UNKNOWN,)
     setup = Setup(plan, EXTERNAL_TORQUE, tolerance, float(plan.scene.span.start), lambda: kernel, warnings=warnings)
     return ExternalSetup(

@@ -12,12 +12,12 @@ from symrot.propagation.steppers.smoothness import non_smooth_torque
 __all__ = ["EXTERNAL_TORQUE", "METHODS", "Choice", "choose_method"]
 
 METHODS = {
-    "auto": "the first method of this table that fits",
+    "auto": "the first of the following methods that can compute the motion",
     "constant": "every state keeps its value",
     "exact": "closed form, at any time without stepping",
-    "taylor": "Taylor series stepped in C from the emitted recurrences",
-    "dop853": "Dormand-Prince 8(5,3), stepped in C around the emitted kernel",
-    "scipy": "SciPy around the emitted NumPy kernel",
+    "taylor": "Taylor series in steps, in C, with recurrences generated for the scene",
+    "dop853": "Dormand-Prince 8(5,3) in steps, in C, with a kernel generated for the scene",
+    "scipy": "a method of SciPy, with a NumPy kernel generated for the scene",
 }
 """The name and description of every method; ``scipy`` means SciPy's DOP853, ``scipy:NAME`` another method of SciPy."""
 
@@ -33,7 +33,7 @@ class Choice(NamedTuple):
 def _automatic(plan: Plan) -> Choice:
     """Return the method that computes the motion of a plan if the user names no method, with the reason."""
     if not plan.states:
-        return Choice("constant", "the plan leaves no state to integrate")
+        return Choice("constant", "no state changes, so there is nothing to integrate")
     if form := exact_form(plan.scene):
         return Choice("exact", form.name, form)
     # without a compiler, SciPy takes the place of Taylor series and Dormand-Prince
@@ -64,7 +64,7 @@ def choose_method(plan: Plan, method: str = "auto") -> Choice:
     """
     if not isinstance(method, str):
         raise InputError(
-            f"method: expected the name of a method, such as 'auto', got {show(method)}; times are the argument t"
+            f"method: expected the name of a method, such as 'auto', got {show(method)}; pass times as the argument t"
         )
     if plan.scene.table is not None:
         if method not in ("auto", "dop853"):

@@ -39,9 +39,9 @@ def starts_far(start: float, low: float, high: float) -> bool:
 
 
 def time_shifted(plan: Plan, kernel: SceneKernel) -> tuple[Plan, SceneKernel]:
-    """Return a plan and its kernel whose t is the scene time minus an epoch, a new constant of the plan.
+    """Return a plan (equations of a scene) and its kernel, in which t is the scene time minus an epoch.
 
-    Both are unchanged if the rates do not depend on time.
+    The epoch is a new constant of the plan. Plan and kernel are returned unchanged if the rates do not depend on time.
     """
     if not kernel.rates.uses("t"):
         # the rates do not depend on time
@@ -154,7 +154,7 @@ def clock(
 
 
 def _folded(node: Node, known: Mapping[str, Fraction]) -> Node:
-    """Return a formula with each subexpression without the epoch replaced by its value.
+    """Return a formula in which each subexpression that does not contain the symbol epoch is replaced by its value.
 
     For a = 3, ``a*2*epoch`` becomes ``6*epoch``.
     """

@@ -44,9 +44,9 @@ class Invariant(NamedTuple):
     values : array, shape (n,)
         Values of the quantity at the sample times.
     scale : float
-        The number by which the drift is divided: the largest magnitude of the quantity along the trajectory, for an
-        energy also of the kinetic energy, and for a component of the angular momentum of the whole vector. For the norm
-        of the quaternion it is 1.
+        The number by which the drift is divided, a largest magnitude along the trajectory: for an energy that of the
+        quantity or of the kinetic energy, whichever is larger; for a component of the angular momentum that of the
+        whole vector; for the spin that of the quantity. For the norm of the quaternion the scale is 1.
     drift : float
         Largest change since the start, relative to ``scale``.
 
@@ -66,7 +66,7 @@ class Invariant(NamedTuple):
 
 
 class MotionSource(Protocol):
-    """Interface of a propagator that a trajectory asks for more about its motion, such as states between samples."""
+    """What a trajectory needs from its propagator to compute more about the motion, such as states between samples."""
 
     # a trajectory that pickle loaded also computes its motion again in this way
     def motion_from(self, initial: Initial) -> Motion:
@@ -365,7 +365,8 @@ class Trajectory(MotionSamples):
             raise InputError(f"t0, t1: expected finite times in s, got {number.show(t0)} and {number.show(t1)}")
         if (self.has_external_torque and self.scene.table is None) or self._propagator is None:
             raise InputError(
-                "transition: expected torques of the scene, formulas or a table, got a motion under the argument torque"
+                "transition: expected a motion under torques of the scene (formulas or a table), got one under the "
+                "argument torque"
             )
         # variational Taylor series, for every method, also for closed forms
         return self._propagator.transition(self.scene, times[0], times[1])

@@ -86,9 +86,10 @@ BENDS = frozenset({"abs", "min", "max", "clip"})
 
 
 def _formulas(plan: Plan, method: str) -> "list[PlanRow]":
-    """Return the rows of the table that say how steps notice short pulses, jumps and kinks in torque formulas.
+    """Return the rows of the table of `symrot explain` about short pulses, jumps and kinks in torque formulas.
 
-    ``method`` is the integration method. The list is empty if no torque is a formula.
+    They say how the steps of the integration notice these features; ``method`` is the integration method. The list is
+    empty if no torque is a formula.
     """
     from symrot.propagation.compiled_models import has_formulas
 
@@ -108,7 +109,7 @@ def _narrow_features(plan: Plan) -> "PlanRow":
     try:
         terms = enclosure(recurrences(scene_kernel(plan).rates))
     except InputError as reason:  # without a Taylor series there are no bounds inside a step
-        return _row("narrow features", False, f"a step may miss them: {reason}")
+        return _row("narrow features", False, f"a step may miss a narrow feature: {reason}")
     if terms is None:
         why = "the formulas are polynomials of low degree, or sines and cosines of time: they have no narrow features"
         return _row("narrow features", True, why)
@@ -117,7 +118,7 @@ def _narrow_features(plan: Plan) -> "PlanRow":
 
 
 def _switches(functions: list[str]) -> "PlanRow":
-    """Return the row of the table about functions with jumps or kinks, such as sign(x), in torques.
+    """Return the row of the table of `symrot explain` about functions with jumps or kinks, such as sign(x), in torques.
 
     ``functions`` are their calls as text.
     """
@@ -128,14 +129,14 @@ def _switches(functions: list[str]) -> "PlanRow":
         if any(bent is bends for _, bent in named)
     ]
     why = (
-        f"{'; '.join(parts)}: their times are located to the last bits by enclosures, and steps end exactly there; "
-        "where both sides of a jump lead back to it, the motion slides along it"
+        f"{'; '.join(parts)}: these times are located to the last bits, by bounds of the formulas (an enclosure), and "
+        "steps end exactly there; where both sides of a jump lead back to the jump, the motion slides along it"
     )
     return _row("switches", False, one_line(why))
 
 
 def _samples(plan: Plan) -> "list[PlanRow]":
-    """Return a list with one row of the table `symrot explain`, about a torque given by samples in a file.
+    """Return a list with one row of the table of `symrot explain`, about a torque given by samples in a file.
 
     The list is empty if the scene has no such torque.
     """
@@ -151,8 +152,9 @@ def _samples(plan: Plan) -> "list[PlanRow]":
 def facts(plan: Plan) -> "PlanReport":
     """Return the table of `symrot explain` as data for JSON.
 
-    In each row, ``operations`` has the number of remaining operations of each kind; ``saved`` is the number of
-    operations that the row's rule saves.
+    A row that counts operations has the number of remaining operations of each kind as ``operations``. If the row is
+    about a rule that may shorten the equations, ``saved`` is the number of operations that the rule saves. A
+    value that a row does not have is None.
     """
     scene = plan.scene
     ladder = _ladder(plan)

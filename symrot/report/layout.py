@@ -73,10 +73,10 @@ def emphasis(text: str, stream: TextIO) -> str:
 
 
 def room(most: int = WIDTH) -> int:
-    """Return the width of printed lines in characters: the width of the terminal less a margin or ``most``,
-    whichever is smaller.
+    """Return the width of printed lines in characters: ``most``, or less in a narrow terminal.
 
-    The width is at least :data:`NARROWEST`. If the output goes to a pipe or file, it is ``most``.
+    In a terminal, lines end :data:`MARGIN` characters before its edge, but they have at least :data:`NARROWEST`. If the
+    output goes to a pipe or file, the width is ``most``.
     """
     if not sys.stdout.isatty():
         return most

@@ -199,7 +199,7 @@ def _drift(axes: Any, t: Floats, trajectory: Any) -> None:
     axes.annotate(f"tolerance {tolerance:g}", (0.0, tolerance), xycoords=("axes fraction", "data"), xytext=(4, 3),
                   textcoords="offset points", color=GREY, fontsize=8)  # fmt: skip
     if not curves:
-        axes.text(0.5, 0.65, "no conserved quantity is made of the integrated states", transform=axes.transAxes,
+        axes.text(0.5, 0.65, "no conserved quantity can be formed from the integrated states", transform=axes.transAxes,
                   ha="center", color=GREY)  # fmt: skip
         return
     handles = sorted(axes.get_legend_handles_labels()[0], key=lambda handle: handle.get_label() == "quaternion norm")

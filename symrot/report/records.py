@@ -173,9 +173,10 @@ class RunReport(TypedDict):
 
 
 class PlanRow(TypedDict):
-    """A row of the table that explains a plan: a quantity that is computed or skipped, and the operations saved.
+    """A row of the table of `symrot explain`: what is computed or skipped, and how many operations that saves.
 
-    ``operations`` has the number of remaining operations of each kind; ``saved`` is the number that the row saves.
+    ``operations`` has the number of remaining operations of each kind, ``saved`` the number of operations that the rule
+    of the row saves; both may be None.
     """
 
     item: str

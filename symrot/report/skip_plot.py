@@ -12,7 +12,7 @@ __all__ = ["figure", "save"]
 PANELS = (
     ("operations", 1.0, "operations of one evaluation"),
     ("evaluation", 1e-9, "ns of one evaluation in C"),
-    ("motion", 1e-6, "µs of the motion from Python"),
+    ("motion", 1e-6, "µs of a call from Python for the motion"),
 )
 GENERAL, OWN, AUTO = COLOURS[1], COLOURS[0], COLOURS[6]
 LEAST = 0.6  # position on the logarithmic axis of a motion without any operation

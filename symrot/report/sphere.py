@@ -214,8 +214,10 @@ def _gaps(directions: Floats, extent: float = 1.0) -> NDArray[np.bool_]:
 
 
 def _plane(axes: Any, directions: Floats, middle: Floats, extent: float, labels: tuple[str, ...]) -> None:
-    """Draw a tiny path of directions, of the size ``extent``, rad, on the plane that touches the sphere at
-    its middle.
+    """Draw a tiny path of directions on a plane that touches the sphere of directions at the middle of the path.
+
+    ``middle`` is the unit vector of the middle, ``extent`` the size of the path, rad. ``labels`` are the names of the
+    three axes.
     """
     first, second = sorted(np.argsort(np.abs(middle))[:2])
     across = np.eye(3)[first] - middle[first] * middle

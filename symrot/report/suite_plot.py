@@ -51,14 +51,16 @@ def figure(suite: Mapping[str, Any]) -> Any:
     axes.set_yticks(range(len(studies)), [one["about"] for one in studies])
     axes.tick_params(axis="y", length=0)
     axes.grid(True, axis="x")
-    axes.set_xlabel("times the time of symrot's steppers at equal error; dots: decades of it, bars: medians")
+    axes.set_xlabel(
+        "time divided by that of symrot's steppers at equal error; dots: powers of ten of the error, bars: medians"
+    )
     if peers:
         legend = axes.legend(loc="lower left", bbox_to_anchor=(-0.01, 1.0), ncols=len(peers), handlelength=0.8,
                              columnspacing=1.4, markerscale=1.6)  # fmt: skip
         handles: Any = legend.legend_handles
         for handle in handles:
             handle.set_alpha(1.0)
-    page.text(0.02, 0.975, "Others over symrot, at equal error", fontsize=13, fontweight="bold", va="top")
+    page.text(0.02, 0.975, "Time relative to symrot, at equal error", fontsize=13, fontweight="bold", va="top")
     machine = studies[0]["machine"]
     versions = ", ".join(f"{name} {machine[name]}" for name in ("scipy", "heyoka") if machine[name])
     page.text(0.985, 0.97, f"{machine['processor']}; {versions}; symrot {__version__}", fontsize=7.5, color=GREY,
@@ -95,7 +97,7 @@ def curves(suite: Mapping[str, Any]) -> Any:
         axes.set_title(one["about"], fontsize=9, pad=3)
     grid[0, 0].set_xlim(OUTERMOST, 1e-16)
     grid[0, 0].set_xticks([10.0**-k for k in range(0, 16, 4)])
-    page.supxlabel("error (the largest at four times): attitude in rad, angular velocity relative", fontsize=9, y=0.008)
+    page.supxlabel("error, maximum over four times: attitude in rad, angular velocity relative", fontsize=9, y=0.008)
     page.supylabel("processor time of one call, s", fontsize=9, x=0.004)
     handles = [
         Line2D([], [], color=LOOKS[name].colour, marker=LOOKS[name].marker, markersize=4, linewidth=LOOKS[name].width,

@@ -193,7 +193,7 @@ def _conserved(report: "RunReport") -> list[str]:
         )
     lines = columns(rows, right=(2,))
     if not report["invariants"]:
-        lines = ["  kept  no conserved quantity is made of the states that are integrated"]
+        lines = ["  kept  no conserved quantity can be formed from the integrated states"]
     return lines + [f"  {line}" for line in fields(_lost(report["not_conserved"]))]
 
 

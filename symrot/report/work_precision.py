@@ -55,7 +55,7 @@ def _floors(runs: Sequence[Mapping[str, Any]]) -> list[str]:
 
 
 def _against(study: Mapping[str, Any]) -> list[str]:
-    rows = [["times the time of", "symrot's steppers", "at the least", "symrot", "at the least"]]
+    rows = [["time divided by that of", "symrot's steppers", "least", "symrot", "least"]]
     for row in study["against"]:
         cells = [
             _short(row[key][what]) if key in row else "-" for key in ("stepped", "all") for what in ("median", "least")
@@ -75,19 +75,22 @@ def lines(study: Mapping[str, Any]) -> list[str]:
     title = f"{one_line(scene['title'])} [{one_line(scene['name'])}]: time against error"
     head = fields(
         [
-            ("span", f"{' to '.join(apart(*scene['span']))} s; the error is the largest at four times of it, "
+            ("span", f"{' to '.join(apart(*scene['span']))} s; the error is the maximum over four times in it, "
                      "attitude in rad, angular velocity relative to its size"),
             ("reference", "; ".join([reference["name"], *(others or ["not compared with a second reference"])])),
             ("machine", f"{machine['processor']}; {', '.join(versions)}"),
-            ("times", "processor time of a call from Python, median of all repetitions; fastest run at least as good"),
+            ("times", "processor time of a call from Python, median of all repetitions; of the runs of a method that "
+                      "are accurate enough, the fastest counts"),
         ]
     )  # fmt: skip
     skipped = fields([(f"{item['method']}:", one_line(item["why"])) for item in study["skipped"]])
     parts: list[Iterable[str]] = [[title], [f"  {line}" for line in head]]
-    title = "for each decade of the error: time of the fastest (1), and how many times as long the others take"
+    title = (
+        "for each power of ten of the error: time of the fastest method, and how many times as long each method takes"
+    )
     parts += [[line.strip() for line in fields([("", title)])]]
     parts[-1] = [*parts[-1], *(f"  {line}".rstrip() for line in _decades(study))]
-    for name, table in (("how many times longer, median over the decades", _against(study)),
+    for name, table in (("ratios of times, median over the powers of ten of the error", _against(study)),
                         ("where each method ends", _floors(study["runs"])), ("left out", skipped)):  # fmt: skip
         if table:
             parts.append([name, *(f"  {line}".rstrip() for line in table)])
@@ -195,8 +198,8 @@ def lines_of_comparison(comparison: Mapping[str, Any]) -> list[str]:
         before, now = item["least errors"]
         rows.append([name, *cells, _short(item["mean"]), f"{now:.1e}", f"{before:.1e}"])
     scene = comparison["scene"]
-    title = f"{one_line(scene['title'])} [{one_line(scene['name'])}]: time of the second study over"
+    title = f"{one_line(scene['title'])} [{one_line(scene['name'])}]: time of the second study divided by"
     same = comparison["machines"][0]["processor"] == comparison["machines"][1]["processor"]
-    note = [] if same else ["", "The studies are of two machines."]
+    note = [] if same else ["", "The two studies were run on different machines."]
     table = columns(rows, width=room(200), wrap=0, right=range(1, len(rows[0])))
     return [f"{title} the time of the first", "", *table, *note]

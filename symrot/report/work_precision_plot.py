@@ -126,7 +126,7 @@ def figure(study: Mapping[str, Any]) -> Any:
                       rotation=90, va="top", ha="left")  # fmt: skip
     axes.grid(True, which="major")
     axes.tick_params(which="minor", length=2, color="#b0b0b0")
-    axes.set_xlabel("error (the largest at four times): attitude in rad, angular velocity relative")
+    axes.set_xlabel("error, maximum over four times: attitude in rad, angular velocity relative")
     axes.set_ylabel("processor time of one call, s")
     page.canvas.draw()
     _leaders(axes, study)

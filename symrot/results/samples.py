@@ -49,7 +49,7 @@ class Samples(ABC):
 
     @cached_property
     def dcm(self) -> Floats:
-        """The attitude as direction cosine matrices ``dcm_sb``, shape (..., 3, 3)."""
+        """The attitude as direction cosine matrices ``dcm_sb``, body to space, shape (..., 3, 3)."""
         return conversions.quaternion_to_dcm(self.quaternion)
 
     def euler(self, sequence: str, degrees: bool = False) -> Floats:

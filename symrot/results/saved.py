@@ -162,7 +162,7 @@ def load(path: str | Path) -> SavedTrajectory:
     try:
         refuse_special(Path(path))
         if not zipfile.is_zipfile(path):
-            raise ValueError("it is no archive of arrays")
+            raise ValueError("the file is not an NPZ archive")
         with np.load(path, allow_pickle=False) as content:
             return _saved(content)
     except (*_ARCHIVE_FAULTS, *_CONTENT_FAULTS) as reason:
@@ -178,7 +178,7 @@ def _refuse(path: str | Path, why: str) -> NoReturn:
 
 def _saved(content: Any) -> SavedTrajectory:
     if not hasattr(content, "files") or "metadata" not in content.files:
-        raise ValueError("it has no metadata of symrot")
+        raise ValueError("the file has no metadata of symrot")
     metadata = json.loads(str(content["metadata"]))
     saved = SavedTrajectory(metadata, _items(content, metadata, str))
     if not isinstance(saved.metadata["status"], int) or None in saved._about:

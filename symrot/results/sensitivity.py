@@ -83,8 +83,8 @@ class Sensitivities(Mapping[str, Sensitivity]):
     Attributes
     ----------
     variables : tuple of str
-        The m variables: the requested names, those of a vector with the number of the component, such as ``omega_2``;
-        each of them is accepted as a key, too.
+        The m variables: the requested names, for a vector with the number of the component, such as ``omega_2``. The
+        name of each variable is accepted as a key, too.
     units : tuple of str
         Units of the variables; empty for a parameter of a formula, whose unit no scene states.
     groups : mapping
@@ -98,7 +98,8 @@ class Sensitivities(Mapping[str, Sensitivity]):
     switchings : tuple of SwitchSlopes
         The switches of the torques up to the last sample, with the derivatives of their times.
     times : array, shape (n, m), or None
-        For the samples at an event, ``at_events`` of a trajectory: the derivatives of the times of the samples.
+        The derivatives of the times of the samples, if these are the times of an event (``at_events`` of a trajectory);
+        None for samples at fixed times.
 
     Examples
     --------
@@ -137,7 +138,7 @@ class Sensitivities(Mapping[str, Sensitivity]):
     def __repr__(self) -> str:
         *motions, samples = self.omega.shape[:-2]
         of = f"{motions[0]} trajectories, " if motions else ""
-        return f"<Sensitivities by {', '.join(self.variables)}: {of}{samples} samples>"
+        return f"<Sensitivities with respect to {', '.join(self.variables)}: {of}{samples} samples>"
 
     def of(self, motion: int) -> "Sensitivities":
         """Return the derivatives of motion number ``motion``, from 0, of an ensemble."""
@@ -146,9 +147,10 @@ class Sensitivities(Mapping[str, Sensitivity]):
 
     @property
     def record(self) -> dict[str, Any]:
-        """The names and units of the variables, the requested groups, and the derivatives of times, as data for JSON.
+        """Data for JSON: the variables, and the derivatives of the times of events and switches.
 
-        A file of samples contains this record; :func:`restored` reads it.
+        The variables have names and units, and ``groups`` says which variables belong to each requested name. A file of
+        samples contains this record; :func:`restored` reads it.
         """
         record: dict[str, Any] = {
             "variables": list(self.variables),
@@ -173,7 +175,7 @@ class Sensitivities(Mapping[str, Sensitivity]):
             for quantity, (components, own, frame, meaning) in OUTPUTS.items():
                 names = tuple(f"{component}{BY}{variable}" for component in components)
                 values = getattr(self, quantity)[..., number]
-                text = f"derivative of the {meaning}, by {variable}"
+                text = f"derivative of the {meaning} with respect to {variable}"
                 items.append(
                     Labelled(f"{quantity}{BY}{variable}", values, names, quotient_unit(own, unit), frame, text)
                 )
@@ -185,7 +187,7 @@ def event_time_items(variables: Sequence[str], units: Sequence[str], slopes: Flo
     items = []
     for number, (variable, unit) in enumerate(zip(variables, units, strict=True)):
         name = f"{TIME}{BY}{variable}"
-        text = f"derivative of the time of the event, by {variable}"
+        text = f"derivative of the time of the event with respect to {variable}"
         items.append(Labelled(name, slopes[:, number], (name,), quotient_unit("s", unit), "", text))
     return items
 
@@ -227,6 +229,9 @@ def restored(record: Mapping[str, Any], items: Mapping[str, Labelled]) -> Sensit
 
 
 def time_slopes(rows: Sequence[Sequence[float | None]], variables: int | None) -> Floats:
-    """Return the derivatives of times from a file, shape (k, m); None in the file is NaN in the result."""
+    """Return the derivatives of k times by m variables as an array, shape (k, m), from ``rows`` in a file.
+
+    None in the file is NaN in the result. ``variables`` is m; without it, k must be at least 1.
+    """
     table = np.array([[np.nan if value is None else value for value in row] for row in rows], dtype=np.float64)
     return table if variables is None else table.reshape(len(rows), variables)

@@ -86,7 +86,12 @@ def _of_dcm(rows: Matrix, value: object, where: str) -> Attitude:
     product = multiply(rows, transpose(rows))
     worst = max(abs(product[i][j] - (i == j)) for i in range(3) for j in range(3))
     if worst > ORTHOGONAL:
-        fail(where, "a rotation: orthonormal rows, to 1e-9", value, f"its rows deviate from that by {float(worst):.2g}")
+        fail(
+            where,
+            "a rotation: orthonormal rows, to 1e-9",
+            value,
+            f"its rows deviate from orthonormality by {float(worst):.2g}",
+        )
     if determinant(rows) < 0:
         fail(where, "a rotation, of determinant +1", value, "this is a reflection, of determinant -1")
     # Shepperd's method, without loss of digits; the result has the exact matrix of this quaternion.

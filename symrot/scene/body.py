@@ -206,7 +206,8 @@ def _body_of_moments(inertia: Matrix, values: Mapping[str, Any], where: str, sou
     """Return the body with the tensor ``inertia`` about its point of rotation.
 
     ``values`` has the entries ``"mass"``, ``"center_of_mass"``, ``"name"`` and ``"about"`` of the body's table in the
-    scene file; ``source`` ends its description.
+    scene file. ``source`` says how the inertia was given, for the body's description:
+    ``"wheel with given principal moments"``.
     """
     about, center = values["about"], values["center_of_mass"]
     if about == "center_of_mass":
@@ -287,7 +288,7 @@ def _read_shape_table(value: Mapping[str, Any], where: str, others: Mapping[str,
     ``others`` are further keys that the table may have, such as ``name``.
     """
     if "shape" not in value:
-        fail(f"{where}.shape", f"one of the shapes {', '.join(SHAPES)}, the key is missing")
+        fail(f"{where}.shape", f"one of the shapes {', '.join(SHAPES)}; the key is missing")
     shape = _shape_name(value["shape"], f"{where}.shape")
     dimensions = [dimension.name for dimension in shape.dimensions]
     values = read_table(value, where, {

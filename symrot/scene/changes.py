@@ -42,10 +42,11 @@ EXCLUSIVE: dict[tuple[str | int, str | int], str] = {
     ("torque", "weight"): "gravity",
     ("torque", "gravity"): "weight",
 }
-"""(Top-level table of a path, key) -> the key that may not stand beside this key, in the same table.
+"""(First key of a path, last key of the path) -> the key that may not stand in the same table as the last key.
 
-If a value with one of both keys is set, the value with the other key is removed.
-"""
+The path leads to a value in the scene file: for ``body.part[0].mass`` the pair is ``("body", "mass")``, and the key
+that it excludes is ``"density"``. A change that sets a value with one of the two keys removes a value with the other
+key."""
 
 RATES = ("omega_1", "omega_2", "omega_3")
 MOST_STEPS = 1_000_000  # more than any path has
@@ -157,14 +158,14 @@ def number_path(scene: SceneContent, key: str) -> Path:
 def set_last(key: str) -> bool:
     """Return whether a change by ``key`` must come after the other changes, because it uses numbers that they may set.
 
-    ``I_xx`` and ``center_of_mass`` replace the shapes of the body by moments of inertia; ``omega_2`` keeps the other
-    two components of omega in the body, which depend on the attitude if the scene gives omega in space.
+    ``I_xx`` and ``center_of_mass`` replace the shapes of the body by moments of inertia. A change of ``omega_2`` leaves
+    the other two body components of omega unchanged; if the scene gives omega in space, these follow from the attitude.
     """
     return key in (*TENSOR, *RATES, "principal") or str(key).rpartition(".")[2].startswith("center_of_mass")
 
 
 def in_order(scene: SceneContent, changes: Mapping[str, Any]) -> Content:
-    """Return ``changes`` in the order in which none replaces the value of another: ``omega`` before ``omega_2``.
+    """Return ``changes`` in an order in which none overwrites an earlier one: ``omega`` before ``omega_2``.
 
     Raises
     ------
@@ -176,7 +177,7 @@ def in_order(scene: SceneContent, changes: Mapping[str, Any]) -> Content:
         path = _whole_path(scene, key)
         for other, before in paths.items():
             if path and path == before:
-                raise InputError(f"{key}: expected each value once, got {_text(Place(path))} by {other}, too")
+                raise InputError(f"{key}: expected each value once, but {other} sets {_text(Place(path))} too")
             if path and before and _exclude(path, before):
                 raise InputError(f"{key}: expected either {other} or {key}, since each replaces the other, got both")
         paths[key] = path
@@ -187,7 +188,10 @@ def in_order(scene: SceneContent, changes: Mapping[str, Any]) -> Content:
 
 
 def _whole_path(scene: SceneContent, key: str) -> Path:
-    """Return the path of the value that ``key`` names, down to the component of a vector; () if it names none yet."""
+    """Return the path of the value that ``key`` names in the scene file, down to the component of a vector.
+
+    The path is () if the key names no single value; another change may still add the value.
+    """
     if key == "principal":
         return ("body", "inertia")
     if key in TENSOR:
@@ -267,7 +271,7 @@ def _place(scene: SceneContent, key: str) -> Place:
 def path_of(key: str) -> Path:
     """Return a dotted name as a path of keys and indices: ``torque[0].weight`` -> ``("torque", 0, "weight")``.
 
-    The result is () if ``key`` is no such name.
+    The result is () if ``key`` is not a dotted name.
     """
     steps: list[str | int] = []
     position = 0
@@ -364,7 +368,11 @@ def _table(content: Content, path: Path, key: str) -> Any:
 
 
 def _vector(scene: SceneContent, path: Path) -> Sequence[Any]:
-    """Return the three components of the vector at a path of the content, for a change of a single component."""
+    """Return the three components of the vector to which ``path`` leads in the scene's content.
+
+    A change of one component replaces the whole vector. If the content has the vector in another form, such as
+    ``omega_space``, the result is computed from the scene.
+    """
     place: Any = scene.content
     if path[-1] == "center_of_mass" and "center_of_mass" in scene.content["body"]:
         path = ("body", "center_of_mass")
@@ -381,11 +389,10 @@ def _vector(scene: SceneContent, path: Path) -> Sequence[Any]:
 
 
 def _constant_of_torque(scene: SceneContent, path: Path) -> Fraction | tuple[Fraction, ...] | None:
-    """Return the exact value of a torque's constant that the file does not give, but that follows from others.
+    """Return the exact value of a torque's constant that the file does not give, but that follows from other values.
 
-    The weight, for instance, follows from the mass and the acceleration of gravity.
-
-    None if the path names no such constant.
+    The weight, for instance, follows from the mass and the acceleration of gravity. None if ``path`` leads to no
+    constant of a torque.
     """
     kinds = [torque.get("kind") for torque in scene.content.get("torque", ())]
     if path[0] != "torque" or len(path) != 3 or not isinstance(path[1], int) or path[1] >= len(kinds):

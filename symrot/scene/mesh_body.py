@@ -57,7 +57,7 @@ def read_mesh_table(
         "mesh": Entry(text, required=True),
         "mass": Entry(number("a mass in kg", "positive")),
         "density": density,
-        "scale": Entry(number("a length in m of the unit of the mesh", "positive"), default=Fraction(1)),
+        "scale": Entry(number("a length in m, that of one unit of the mesh", "positive"), default=Fraction(1)),
         "flip": Entry(flag, default=False),
         **others,
     }, "a body given by a mesh")  # fmt: skip

@@ -82,7 +82,7 @@ def read_table(value: object, where: str, entries: Mapping[str, Entry], what: st
             fail(key_path(where, key), f"one of the keys {', '.join(entries)} of {what}", entries_by_key[key], reason)
     for key, entry in entries.items():
         if entry.required and key not in entries_by_key:
-            fail(key_path(where, key), f"a value, the key is missing ({what} needs it)")
+            fail(key_path(where, key), f"a value; the key is missing ({what} needs it)")
     return {
         key: entry.read(entries_by_key[key], key_path(where, key)) if key in entries_by_key else entry.default
         for key, entry in entries.items()

@@ -286,9 +286,10 @@ class _Origin(NamedTuple):
 
 
 def _parts(scene: Scene) -> tuple[Any, ...]:
-    """Return body, torques and table of a scene, which :meth:`Scene.to_dict` takes from the content of its file.
+    """Return the body, the torques and the table of samples of a scene, for :meth:`Scene.to_dict`.
 
-    They cannot be converted to content again: if one of them is replaced, the content is out of date.
+    The method cannot convert these objects to content; it takes the content of the file from which they were read. If
+    one of these objects was replaced later, that content no longer describes the scene.
     """
     return scene.body, scene.torques, scene.table
 

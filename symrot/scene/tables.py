@@ -194,10 +194,10 @@ def _read_output(value: Any, where: str) -> Output:
         "degrees": Entry(flag, default=False),
     }, "the output")  # fmt: skip
     if "euler" in values["quantities"] and values["sequence"] is None:
-        fail(f"{where}.sequence", 'an Euler sequence for the quantity euler, such as "ZXZ", the key is missing')
+        fail(f"{where}.sequence", 'an Euler sequence for the quantity euler, such as "ZXZ"; the key is missing')
     for key in ("sequence", "degrees"):
         if "euler" not in values["quantities"] and key in value:
-            fail(f"{where}.{key}", "euler among the quantities, since nothing else uses this key", value[key])
+            fail(f"{where}.{key}", '"euler" in output.quantities, since no other quantity uses this key', value[key])
     return Output(values["quantities"], values["sequence"], values["degrees"])
 
 
@@ -221,7 +221,7 @@ def _read_tolerance(value: Any, where: str) -> Fraction:
     smallest, largest = TOLERANCES
     if not smallest <= tolerance <= largest:
         reason = "it is a relative error" if tolerance <= 0 else "a double carries no more digits"
-        reason = "errors above it make a motion meaningless" if tolerance > largest else reason
+        reason = "larger errors make a motion meaningless" if tolerance > largest else reason
         fail(where, "a tolerance from 1e-15 to 1e-2", value, reason)
     return tolerance
 

@@ -198,7 +198,7 @@ def _fit_gravity(values: dict[str, Any], body: Body, where: str) -> dict[str, An
     if weight is not None and acceleration is not None:
         fail(f"{where}.gravity", "weight or gravity, not both", acceleration)
     if weight is None and acceleration is None:
-        fail(f"{where}.weight", "the weight in N, or gravity in m/s^2 for a body with a mass, both are missing")
+        fail(f"{where}.weight", "the weight in N, or gravity in m/s^2 for a body with a mass; both keys are missing")
     if weight is None and body.mass is None:
         fail(f"{where}.gravity", "the weight in N: the mass of the body is unknown", acceleration)
     if center is not None and body.center_of_mass is not None and center != body.center_of_mass:
@@ -306,7 +306,7 @@ def read_torque(value: Any, body: Body, where: str) -> Torque:
     kinds = (*TORQUE_KINDS, TABLE_KIND.kind)
     entries = table(value, where, f"a table with a kind, one of {', '.join(kinds)}")
     if "kind" not in entries:
-        fail(f"{where}.kind", f"one of {', '.join(kinds)}, the key is missing")
+        fail(f"{where}.kind", f"one of {', '.join(kinds)}; the key is missing")
     name = choice(*kinds)(entries["kind"], f"{where}.kind")
     kind = TORQUE_KINDS[name]
     values = read_table(entries, where, _entries(kind), f"a torque of kind {name}")

@@ -1,6 +1,7 @@
-"""Computation of the chunks of a sweep by the workers of a Dask cluster.
+"""Computation of the chunks of a sweep (many motions of a scene with varied values) by the workers of a Dask cluster.
 
-Workers on this machine write their chunks into the file of the sweep; others send them to this process, which writes.
+Workers on this machine write their chunks into the file of the sweep; other workers send them to this process, which
+writes.
 """
 
 from collections import deque
@@ -57,9 +58,10 @@ def _client(scheduler: object) -> Any:
 
 
 def compute_and_store(text: bytes, start: int, stop: int, offer: Offer | None) -> Chunk | Written:
-    """Return the chunk of the trajectories ``start`` to ``stop - 1``, or only its range if it is stored here.
+    """Compute the trajectories ``start`` to ``stop - 1``; return their chunk, or its range if this worker stored it.
 
-    ``text`` is the job from :func:`packed`; with an ``offer`` this process may write into the client's file.
+    ``text`` is the job from :func:`packed`. ``offer`` is what a worker on the machine of the sweep needs to write into
+    the file of the sweep; if it is None, the chunk is returned.
     """
     chunk = compute_packed(text, start, stop)
     return chunk if offer is None else stored(chunk, offer)

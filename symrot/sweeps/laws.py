@@ -56,7 +56,7 @@ GRIDS = {
     "geomspace": "geomspace(first, last, count)",
     "values": "values(a, b, ...)",
 }
-"""Name of a kind of grid (law that lists values) -> the form in which a user writes it."""
+"""Name of a law that lists the values of a quantity in a sweep, such as ``linspace`` -> its form."""
 
 
 @dataclass(frozen=True)
@@ -73,7 +73,10 @@ class Distribution:
 
 @dataclass(frozen=True)
 class Grid:
-    """A list of the values that one quantity takes in a sweep; each is combined with all values of the other grids."""
+    """A list of the values that one quantity takes in a sweep.
+
+    Each value is combined with all values of the other grids.
+    """
 
     values: tuple[float, ...]
 

@@ -1,4 +1,7 @@
-"""The layout of the results of a sweep: its arrays with their dimensions and units, and what identifies the sweep."""
+"""The layout of the results of a sweep: its arrays with their dimensions and units, and what identifies the sweep.
+
+A sweep computes many motions (trajectories) of a scene with varied values, in chunks of consecutive trajectories.
+"""
 
 import hashlib
 from collections.abc import Callable, Mapping
@@ -70,7 +73,10 @@ class Table:
 
 @dataclass(frozen=True)
 class Header:
-    """The data with which a store is created: identity of the sweep, arrays, number of trajectories in a chunk."""
+    """The data with which a store for the results of a sweep (many motions of a scene with varied values) is created.
+
+    These are the settings that identify the sweep, its arrays, and the number of trajectories in a chunk.
+    """
 
     identity: Mapping[str, str]  # what determines the results, by name
     scene: str
@@ -99,7 +105,7 @@ class Store(Protocol):
         """Return the pairs (start, stop) of trajectories, one per chunk, whose results are not stored yet."""
 
     def write(self, chunk: Chunk) -> None:
-        """Store a chunk; a chunk that is stored already is replaced by the same values."""
+        """Store a chunk; if it is stored already, it is overwritten, which changes no values."""
 
     def read(self, name: str, start: int, stop: int) -> NDArray[Any]:
         """Return the values of the array ``name`` for the trajectories ``start`` to ``stop - 1``."""

@@ -187,7 +187,7 @@ def _derivatives(name: str, scene: Scene, reduction: str, time: float, suffix: s
         for key in chosen:
             quantity, k = parts[key]
             _, unit, frame, meaning = OUTPUTS[quantity]
-            text = f"derivative of the {meaning}, by {item.name}{_reduced(reduction, time)}"
+            text = f"derivative of the {meaning} with respect to {item.name}{_reduced(reduction, time)}"
             own = f"{quantity}{BY}{item.name}"
             label = f"{key}{BY}{item.name}{suffix}"
             outputs.append(SweepOutput(label, own, k, reduction, time, quotient_unit(unit, item.unit), frame, text))

@@ -1,4 +1,4 @@
-"""Computation of the chunks of a sweep by several processes on this machine.
+"""Computation of the chunks of a sweep (many motions of a scene with varied values) by processes on this machine.
 
 If a process is killed, a new one computes its chunks again. The processes end when the process that started them ends,
 even if it is killed.
@@ -48,7 +48,7 @@ def _unpacked(text: bytes) -> Job:
 
 
 def _import(text: bytes) -> None:
-    """Import the modules that a job needs, in a new process."""
+    """Import the modules that a job needs, in a new process; ``text`` is the job from :func:`packed`."""
     _unpacked(text)
 
 

@@ -304,10 +304,11 @@ def _narrowed(blocks: Blocks, searches: list[_Search], values: dict[tuple[int, i
 
 
 def _split(search: _Search, counts: NDArray[np.int64], shift: int) -> list[_Search]:
-    """Return searches in those parts of the interval of ``search`` that contain values of its ranks (0: the smallest).
+    """Split the interval of ``search`` into parts, and return a search in each part that contains a value of its ranks.
 
-    Each part has 2^shift keys, and ``counts`` has the number of values in each part. For ``counts`` 5 and 7, rank 6
-    becomes rank 1 of a search in the second part.
+    The interval is one of keys, integers in the same order as the values; a part has 2^shift keys, and ``counts`` has
+    the number of values in each part. Rank 0 is the smallest value. For ``counts`` 5 and 7, rank 6 becomes rank 1 of a
+    search in the second part.
     """
     ends = np.cumsum(counts)
     parts: dict[int, _Search] = {}

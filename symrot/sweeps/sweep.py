@@ -238,7 +238,9 @@ def sweep(
     _require(keep in KEEP, "keep", f"one of {', '.join(KEEP)}", keep)
     _require(keep == "all" or bool(chosen), "keep", "statistics to compute, with keep = 'statistics'", statistics)
     target = None if path is None else _target(path, keep)
-    _require(workers is None or scheduler is None, "workers", "no number of processes here with a scheduler", workers)
+    _require(
+        workers is None or scheduler is None, "workers", "None with a scheduler, which has workers of its own", workers
+    )
     number = cores() if workers is None else workers
     _whole(number, "workers", MOST_WORKERS)
     if chunk is not None:

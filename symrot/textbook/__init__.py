@@ -21,7 +21,7 @@ DOCUMENTS = ("chen", "sahakian", "brown", "beer-johnston")
 LINE_KINDS = {
     "operators": "the signs of a formula whose letters the extraction put on other lines",
     "letters": "a formula whose letters the double encoding garbled",
-    "repeats": "a formula that stands elsewhere too",
+    "repeats": "a formula that the document prints in another place too",
     "input": "what is given in a worked example",
     "definition": "a symbol, a component or a form of an equation is introduced",
     "law": "a law of mechanics that the document takes as given",
@@ -30,9 +30,10 @@ LINE_KINDS = {
     "label": "the label of a figure, a heading, or a number of an equation that was extracted without its formula",
     "other": "the title of another document",
 }
-"""Kind of a line that states no formula of its own -> its description.
+"""Kind of a line of a document that has a relation sign (such as =) but states no new formula -> its description.
 
-Lines of the first four kinds belong to a claim: their ``claim`` is the name of the claim that states the formula."""
+A line of the kind operators, letters, repeats or input belongs to a claim: its attribute ``claim`` is the name of the
+claim that states the formula."""
 
 
 class Document(NamedTuple):

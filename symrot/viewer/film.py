@@ -203,7 +203,10 @@ def _polygons(patch: Patch) -> list[Floats]:
 
 
 def _curves(patch: Patch) -> list[list[Point]]:
-    """Return the points of a curve as one list, or, for a patch of single points, one list for each point."""
+    """Return the points of a patch without area, a part of the body's drawing, as lists: one list for a curve.
+
+    For single points, there is one list for each point.
+    """
     return [patch.points] if patch.columns else [[point] for point in patch.points]
 
 

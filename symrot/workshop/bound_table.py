@@ -48,15 +48,20 @@ def library_tasks() -> dict[str, BoundTask]:
 
 
 def table_faults() -> list[str]:
-    """Return the faults of the table of bounds, one sentence each; an empty list if it is complete and up to date."""
+    """Return the faults of symrot's table of rounding-error bounds, one sentence each.
+
+    The list is empty if the table is complete and up to date.
+    """
     required, known = library_tasks(), table()["bounds"]
-    faults = [] if table()["method"] == method() else ["the table was computed by other source files than the present"]
+    faults = [] if table()["method"] == method() else ["the table was computed by earlier source files"]
     if lacking := len(set(required) - set(known)):
         faults.append(f"{lacking} bounds are not in the table")
     if others := len(set(known) - set(required)):
         faults.append(f"{others} bounds of the table belong to no kernel of the library")
     if wrong := understated({key: task for key, task in required.items() if key in known}):
-        faults.append(f"{len(wrong)} bounds are below the error at a point of their box, the first with key {wrong[0]}")
+        faults.append(
+            f"{len(wrong)} bounds are below the error at a point in their input ranges, the first with key {wrong[0]}"
+        )
     return faults
 
 
@@ -85,7 +90,8 @@ def main(arguments: Sequence[str] | None = None) -> int:
     With ``--check`` the table is only checked; the exit code is 1 if it has faults.
     """
     parser = ArgumentParser(
-        prog="python -m symrot.workshop.bound_table", description="Write the bounds of the library."
+        prog="python -m symrot.workshop.bound_table",
+        description="Write the table of rounding-error bounds of the library.",
     )
     parser.add_argument("--check", action="store_true", help="only check the table")
     parser.add_argument("--workers", type=int, default=2, help="number of processes (default: 2)")

@@ -189,7 +189,7 @@ def lines(section: Mapping[str, Any]) -> list[str]:
     rows = [
         (names.get(each["output"], each["output"]),
          f"{float.fromhex(each['absolute']):.3e}", f"{each['units']} * {unit}",
-         ("" if each["converged"] else f"this method cannot go below {float.fromhex(each['pointwise']):.3e}")
+         ("" if each["converged"] else f"this method cannot prove a bound below {float.fromhex(each['pointwise']):.3e}")
          + (" (modulo whole turns)" if each["modulo_turns"] else ""))
         for each in part["outputs"]
     ]  # fmt: skip
@@ -251,5 +251,5 @@ def target_lines(resized: Mapping[str, Any]) -> list[str]:
     return [
         f"{resized['kernel']}: no error is larger than {resized['target']:g}",
         *hanging(f"for {_box_text(resized['box'], resized['names'])}"), *_region_lines(resized),
-        f"the box given, {resized['size']:.6g} times as wide about its middle",
+        f"these are the given ranges, {resized['size']:.6g} times as wide about their midpoints",
     ]  # fmt: skip

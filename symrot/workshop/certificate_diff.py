@@ -63,7 +63,10 @@ def _first_line(text: str, emitted: str) -> str:
 
 
 def _meaning(text: str, emitted: KernelUnderTest) -> str:
-    """Return a remark on what an edited C text computes, or ``""`` if it performs the same operations."""
+    """Return a remark on what an edited C text of a kernel computes: not its formulas, or its formulas otherwise.
+
+    The remark is ``""`` if the text performs the same operations as the text that symrot emits.
+    """
     file = f"{emitted.name}.c"
     symbols = {place: symbol for place, (symbol, _) in emitted.places.items()}
     formulas = {place: formula for place, (_, formula) in emitted.formulas.items()}

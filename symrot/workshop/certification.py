@@ -54,7 +54,7 @@ class Certificate:
     files : tuple of Path
         The files that were written.
     objects_compared : bool
-        Whether object code was compared in this call, not only in an earlier one.
+        Whether the call of :func:`certify` that made this object compared object code, not only an earlier call.
 
     Examples
     --------
@@ -73,9 +73,10 @@ class Certificate:
 
     @property
     def refuted(self) -> bool:
-        """Whether this call compared object code and did not prove that the code computes the same bits as the C text.
+        """Whether :func:`certify` compared object code without proving that it computes the bits of the C text.
 
-        Only code compiled with flags that preserve every bit counts. The value is False if no code was compared.
+        The proof needs code compiled with flags that preserve every bit; other code is ignored. The value is False if
+        this call of :func:`certify` compared no code.
         """
         return self.objects_compared and certificates.refuted([dict(self.data)])
 

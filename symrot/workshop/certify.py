@@ -60,7 +60,9 @@ def _proven_statement(data: Data, own: SceneSource | None = None) -> Data | None
         jacobian = re.search(r" --jacobian ([\w,]+) ", str(data["regenerate"]))
         text = kernel_text(load_scene(own), jacobian[1].split(",") if jacobian else ())
         if text.name != data["kernel"]:
-            raise CertificateError(f"{data['kernel']}: expected the certificate of {text.name}, of the scene")
+            raise CertificateError(
+                f"{data['kernel']}: expected the certificate of {text.name}, which is the kernel of the scene"
+            )
         return proven_statement(text.under_test(data.get("rounding")))
     name = data["kernel"]
     scene = str(data["regenerate"]).removeprefix("symrot emit ").removesuffix(" --target c")
@@ -149,7 +151,7 @@ def _audit_step(
     if object_file is not None:
         source = path.with_name(f"{data['kernel']}.c")
         report += object_code.object_lines(source.read_text(encoding="utf-8"), object_file, source.name)
-    return [*report, "no theorem of Coq is about a step"] if coq else report
+    return [*report, "Coq theorems are about kernels only, not about steps"] if coq else report
 
 
 def audit_files(
@@ -209,7 +211,7 @@ def _coq(data: Data, progress: Callable[[str], object]) -> list[str]:
     from symrot.certificates.coq.check import check_kernel, coqc
 
     if data["coq"] is None:
-        return ["no theorem of Coq is about this kernel"]
+        return ["there is no Coq theorem about this kernel"]
     if coqc() is None:
         return ["Coq is not installed (Debian package coq): the theorem was not checked"]
     progress("checking with Coq ..")
@@ -325,9 +327,11 @@ def all_lines(certificates: Mapping[str, Data]) -> list[str]:
 
 
 def refuted(certificates: Iterable[Data]) -> bool:
-    """Return whether the object-code section of a certificate lacks the proof that the code computes the C text's bits.
+    """Return whether the object-code section of a certificate lacks the proof that code and C text compute the same
+    bits.
 
-    False if no certificate has such a section. Only code compiled with flags that preserve every bit counts.
+    The proof needs code compiled with flags that preserve every bit; other code is ignored. The result is False if no
+    certificate has such a section.
     """
     # without any such code the proof is missing
     return any(data.get("objects") and not object_code.holds(data["objects"]) for data in certificates)
@@ -387,7 +391,8 @@ def lines(data: Data, compared: bool = True) -> list[str]:
     for part in (data.get("rounding") or {"precisions": []})["precisions"]:
         worst = max(part["outputs"], key=lambda item: float.fromhex(item["absolute"]))
         most = f"{float.fromhex(worst['absolute']):.3g}"
-        rows.append(("rounding", f"{part['precision']}: error at most {most} on the box ({worst['output']})"))
+        bound = f"{part['precision']}: error at most {most} for inputs in the certified ranges ({worst['output']})"
+        rows.append(("rounding", bound))
     if compared:
         rows += [("object code", line) for line in object_code.lines(data.get("objects"))]
     elif data.get("objects"):

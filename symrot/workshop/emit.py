@@ -1,4 +1,4 @@
-"""The public functions that plan a scene, explain its plan, and emit the text of a kernel."""
+"""The public functions that make the plan (the smallest set of equations) of a scene, explain it, and emit kernels."""
 
 from collections.abc import Mapping, Sequence
 from functools import cached_property

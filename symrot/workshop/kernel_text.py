@@ -79,7 +79,11 @@ class KernelText(ABC):
 
     @abstractmethod
     def under_test(self, bounds: Bounds | None = None) -> KernelUnderTest:
-        """Return the kernel's formulas, laws and texts as one object, from which the certificate is made."""
+        """Return the kernel as one object from which its certificate is made: formulas, laws, and texts of the files.
+
+        The laws are equations that are proven from the formulas. ``bounds`` are rounding bounds for the comment at the
+        head of the C files.
+        """
 
     def rounding(self, bounds: Bounds | None) -> Bounds | None:
         """Return the section ``rounding`` of the certificate, which states ``bounds``; None if there are no bounds."""
@@ -126,7 +130,10 @@ class KernelText(ABC):
 
 
 class LibraryText(KernelText):
-    """The texts of a kernel of symrot's library; its rounding bounds hold on the ranges of inputs in its definition."""
+    """The source of a kernel of symrot's library in each language, and its certificate.
+
+    The bounds of the kernel's rounding errors hold on the ranges of inputs that the kernel's definition states.
+    """
 
     folders: ClassVar[Mapping[str, str]] = {"numpy": "../numpy", "js": "../js", "jax": "../jax"}
 
@@ -160,7 +167,10 @@ class LibraryText(KernelText):
         return PRINTERS[target](kernel_program(self.name), kernel_description(self._definition, target))
 
     def rounding(self, bounds: Bounds | None) -> Bounds | None:
-        """Return the bounds of this kernel's rounding errors that come with symrot; None if there are none."""
+        """Return the bounds of this kernel's rounding errors that come with symrot; None if there are none.
+
+        The argument ``bounds`` is not used.
+        """
         return self._section if isinstance(self._section, dict) else None
 
     def under_test(self, bounds: Bounds | None = None) -> KernelUnderTest:
@@ -201,7 +211,7 @@ class SceneText(KernelText):
 
     @cached_property
     def _formulas(self) -> tuple[Formulas, tuple[Argument, ...]]:
-        """The pair (formulas of the rates and of their derivatives, output arrays for them); rates are ``dy/dt``."""
+        """The pair (formulas, output arrays) of the rates ``dy/dt`` and of their derivatives by ``jacobian``."""
         try:
             return rate_derivatives(self._equations, self.jacobian)
         except InputError as reason:

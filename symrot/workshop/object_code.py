@@ -16,8 +16,8 @@ from symrot.workshop.kernel_files import write_files
 
 __all__ = ["holds", "lines", "object_lines", "objects_of", "require_compiler", "table"]
 
-HOLDS = {IDENTICAL: "rounding for rounding: bits and bounds hold",
-         CONTRACTED: "up to fused multiply-adds: bounds hold, bits do not"}  # fmt: skip
+HOLDS = {IDENTICAL: "each rounded as there: the bits of results are the same, the error bounds hold",
+         CONTRACTED: "some fused to multiply-adds: the error bounds hold, the bits of results may differ"}  # fmt: skip
 
 
 def require_compiler() -> None:

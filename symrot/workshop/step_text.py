@@ -42,9 +42,11 @@ DIGITS = 40
 
 
 def _dop853(order: int) -> RungeKutta:
-    """Return the step of order 8 of Dormand and Prince, a Runge-Kutta method, without its error estimates."""
+    """Return the step of order 8 of Dormand and Prince, a Runge-Kutta method, without its error estimates.
+
+    ``order`` is not used, because the method has one order only.
+    """
     stages = range(1, 13)
-    # ``order`` is not used: the method has one order only
     return RungeKutta(
         "dop853", 8, tuple(Fraction(NODES[i]) for i in stages),
         tuple({j - 1: Fraction(a) for j, a in STAGE_WEIGHTS.get(i, {}).items()} for i in stages),
@@ -55,7 +57,7 @@ def _dop853(order: int) -> RungeKutta:
 STEPS: Mapping[str, Callable[[int], RungeKutta | TaylorSeries]] = {
     "rk4": lambda order: RK4, "taylor": TaylorSeries, "dop853": _dop853,
 }  # fmt: skip
-"""Name of a method -> function of an order that returns the method; only that of ``taylor`` uses its argument."""
+"""Name of a method -> function that takes an order and returns the method; only the function of ``taylor`` uses it."""
 
 
 def step_method(name: str, order: int | None = None, jacobian: Sequence[str] = ()) -> Method:

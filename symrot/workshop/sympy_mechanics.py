@@ -74,7 +74,9 @@ def from_sympy(value: Any, frame: ReferenceFrame | None = None) -> Any:
             return ImmutableMatrix(frame.dcm(value))
         return ImmutableMatrix((value.dyadic if isinstance(value, Inertia) else value).to_matrix(frame))
     except ValueError as reason:
-        raise InputError(f"from_sympy: expected frames with a known orientation to each other, got {reason}") from None
+        raise InputError(
+            f"from_sympy: expected frames with a known orientation relative to each other, got {reason}"
+        ) from None
 
 
 def _table(body: RigidBody, tensor: Any) -> dict[str, Any]:

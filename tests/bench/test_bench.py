@@ -186,7 +186,7 @@ def test_a_wrong_reference_is_refused(wrong, monkeypatch):
     monkeypatch.setattr(reference_module, "REFERENCES", tuple(table))
     with pytest.raises(SymrotError, match="one of the references is wrong") as caught:
         reference(Problem(scene()))
-    assert "but these differ from Taylor series in 40 digits: DOP853 in long double" in str(caught.value)
+    assert "but the following differ from Taylor series in 40 digits: DOP853 in long double" in str(caught.value)
 
 
 def test_a_reference_that_is_no_number_confirms_nothing(monkeypatch):

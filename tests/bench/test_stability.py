@@ -58,7 +58,7 @@ def test_the_error_of_the_reference_is_that_of_its_own_series():
     assert 1e-22 < coarse.error(1.0, periodic=False) == pytest.approx(float(apart), rel=0.5)
     assert fine.error(1.0, periodic=False) < 1e-27
     lines = stability._growth_lines({**GROWTH, "reference_error": 3e-24})
-    assert "compared with a series in 40 digits, 23 of them right at the end" in lines[2]
+    assert "compared with a series in 40 digits, 23 of them correct at the end" in lines[2]
 
 
 GROWTH = {"title": "a plate", "variable": "t", "at": [0.0, 1.0], "curves": [

@@ -130,7 +130,7 @@ def test_negative_numbers_of_an_obj_file_count_from_their_own_line(tmp_path):
     path.write_text("\n".join([*OBJ.splitlines()[:4], *backwards, *second, *backwards]))
     assert symrot.mesh(path, density=6).mass == 1 + 3
     path.write_text("\n".join([*OBJ.splitlines()[:4], *backwards, "f -4 -4 -4 -4", *second, *backwards]))
-    with pytest.raises(InputError, match=r"expected positive numbers of vertices in an OBJ file whose lines differ"):
+    with pytest.raises(InputError, match=r"expected positive vertex indices in an OBJ file whose lines do not"):
         symrot.mesh(path, density=6)
 
 
@@ -141,7 +141,7 @@ def test_negative_numbers_of_an_obj_file_count_from_their_own_line(tmp_path):
     ({"mass": float("nan")}, "mass: expected a positive mass in kg"),
     ({"density": 0}, "density: expected a positive density in kg/m^3, got 0"),
     ({"density": "q"}, "density: expected"),
-    ({"mass": 1, "scale": 0}, "scale: expected a positive length in m of the unit of the mesh, got 0"),
+    ({"mass": 1, "scale": 0}, "scale: expected a positive length in m, that of one unit of the mesh, got 0"),
     ({"mass": 1, "scale": "1e-50"}, "scale: expected a length from 1e-30 to 1e30 m"),
     ({"mass": 1, "flip": True}, "turned inside out"),
 ])  # fmt: skip

@@ -140,7 +140,7 @@ def test_an_obj_file_with_other_spaces_comments_and_materials_is_read_or_refused
     ("v 1.0 0.0 0.0\nv 1.0 1.0 0.0", "v 1.0 0.0 0.0 1.0\nv 1.0 1.0", "equally many numbers, 3 or more, got line 2"),
     ("v 1.0 0.0 0.0", "v 1,0 0,0 0,0", "expected a mesh in the format OBJ"),
     ("f 1 2 6 5", "f 1 2 6.0 5", "expected a mesh in the format OBJ"),
-    ("f 1 2 6 5", "f 1 2 0 5", "expected positive numbers of vertices"),
+    ("f 1 2 6 5", "f 1 2 0 5", "expected positive vertex indices"),
     ("f 1 2 6 5", "surf 0 1 0 1 1 2 6 5", "expected a mesh of polygons, got a free-form surface in line 11"),
     ("f 1 2 6 5", "f 1 2 6 5\ncall other.obj", "expected a mesh of polygons, got a reference to another file in line 12"),
 ])  # fmt: skip

@@ -313,7 +313,7 @@ def test_a_matrix_shown_as_a_product_is_that_product(page):
 def test_a_name_is_said_to_be_one(page):
     step = page.step("It is.", 2 * x, x + x, because="of sums", named="\\text{twice}")
     assert step.printed == (False, True)
-    assert "read back and decided: 1 of 2 sides; the others are names" in page.markdown()
+    assert "in the proof: 1 of 2; the others are names or words" in page.markdown()
 
 
 def test_a_condition_is_said_once(page):

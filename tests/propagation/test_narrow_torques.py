@@ -133,14 +133,14 @@ def test_where_the_rounding_of_a_phase_exceeds_the_tolerance_a_warning_says_so(m
     assert off.any() and len(moved.stats.rounded_beyond) == 1
     (beyond,) = moved.stats.rounded_beyond
     assert (abs(moved.t[off]) > abs(beyond)).all()
-    assert f"beyond t = {beyond!r} s the rounding of the torque, a formula of the time" in moved.warnings[-1]
+    assert f"beyond t = {beyond!r} s the rounding of the torque, a formula that contains the time" in moved.warnings[-1]
     if not more:
         assert propagator(moved.t, events=["omega_3 - 9"]).warnings == moved.warnings
     assert symrot.propagator(made, method, 1e-13, **more)(moved.t).warnings == ()
 
 
 def test_the_samples_before_a_stop_carry_the_warning_too():
-    with pytest.raises(PropagationError, match="rounding errors in a formula of the time") as stopped:
+    with pytest.raises(PropagationError, match="rounding errors in a formula that contains the time") as stopped:
         symrot.propagator(scene("sin(t**2)", stop=60, moments=(1, 1, 1)), "taylor", 1e-15)(np.linspace(0, 60, 61))
     assert stopped.value.trajectory.warnings[-1].startswith("beyond t = ")
 

@@ -325,7 +325,7 @@ def test_what_has_no_sensitivities_is_refused_in_a_sentence(options, message):
 
 
 def test_a_transition_needs_torques_of_the_scene_and_finite_times():
-    with pytest.raises(InputError, match="expected torques of the scene"):
+    with pytest.raises(InputError, match="expected a motion under torques of the scene"):
         symrot.propagate(TOP, t=[1], torque=lambda t, omega, q: (0, 0, 0), max_step=0.1).transition(0, 1)
     with pytest.raises(InputError, match="finite times"):
         symrot.propagate("t_handle").transition(0, inf)

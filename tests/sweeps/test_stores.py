@@ -267,7 +267,9 @@ def test_a_dask_cluster_gives_the_same_bits(whole, cluster):
 
 
 def test_processes_here_beside_a_scheduler_are_refused():
-    with pytest.raises(InputError, match="workers: expected no number of processes here with a scheduler, got 2"):
+    with pytest.raises(
+        InputError, match="workers: expected None with a scheduler, which has workers of its own, got 2"
+    ):
         sweep(scheduler="tcp://127.0.0.1:9", workers=2)
 
 

@@ -141,7 +141,7 @@ def test_a_matrix_of_the_other_frame_is_an_error_and_no_other_reading(survey):
 
 
 def test_a_condition_is_told_in_the_words_of_a_book():
-    assert condition_words("cos(alpha) != 0") == r"$\cos \alpha \neq 0$: $\alpha$ is no odd multiple of 90 degrees"
+    assert condition_words("cos(alpha) != 0") == r"$\cos \alpha \neq 0$: $\alpha$ is not an odd multiple of 90 degrees"
     assert condition_words("sin(alpha) >= 0") == r"$\sin \alpha \ge 0$: $\alpha$ lies between 0 and 180 degrees"
     assert condition_words("-a*b + c >= 0") == r"$c \ge a b$"
     assert condition_words("x >= 0") == r"$x \ge 0$"

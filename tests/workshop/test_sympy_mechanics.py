@@ -160,7 +160,7 @@ def test_other_values_of_sympy_are_refused_in_a_sentence(omega):
 @pytest.mark.parametrize(("value", "frame", "sentence"), [
     (3, None, "a RigidBody, Inertia, Dyadic or ReferenceFrame, got int"),
     (outer(N.x, N.x), None, "the frame of the components, got NoneType"),
-    (ReferenceFrame("B"), N, "known orientation to each other"),
+    (ReferenceFrame("B"), N, "known orientation relative to each other"),
     (ReferenceFrame("B"), None, "the space frame"),
     (RigidBody("b"), None, "a real number, got b_ixx"),
     (RigidBody("b"), N, "frame: expected none for a RigidBody, which has its own, got N"),

@@ -12,9 +12,10 @@ __all__ = ["drivers", "heyoka_drivers"]
 
 
 def drivers(signature: Signature, batch: bool) -> str:
-    """Return the C text of ``symrot_repeat_one`` and ``symrot_repeat_batch`` for a kernel with these arguments.
+    """Return C functions that call a kernel many times, to be timed: ``symrot_repeat_one``, ``symrot_repeat_batch``.
 
-    The text is to be appended to the C text of the kernel. Without ``batch``, the kernel has no batch function, and a
+    The first calls the kernel for one sample after the other, the second calls its batch function for all samples. The
+    text is to be appended to the C text of the kernel. If ``batch`` is False, the kernel has no batch function, and a
     loop over its one-sample function replaces it.
     """
     every, sizes = signature.arguments, _sizes(signature)
@@ -50,7 +51,7 @@ _REPEAT_BATCH = """void symrot_repeat_batch(size_t repeats, size_t n, double **a
 
 
 def _sizes(signature: Signature) -> dict[str, int]:
-    """Return the numbers that a kernel takes and returns for one sample, by the role of the arguments: in and out."""
+    """Return how many numbers a kernel takes (key ``"in"``) and returns (key ``"out"``) for one sample."""
     return {role: sum(a.size for a in signature.arguments if a.role == role) for role in ("in", "out")}
 
 
@@ -72,9 +73,10 @@ def _batch_of_one(signature: Signature) -> list[str]:
 
 
 def heyoka_drivers(signature: Signature) -> str:
-    """Return the C text of ``symrot_repeat_one`` and ``symrot_repeat_batch`` for a kernel that heyoka has compiled.
+    """Return the C functions that :func:`drivers` returns, for a kernel that heyoka has compiled.
 
-    Its function ``symrot_take`` receives the addresses of the compiled functions.
+    The C text also has a function ``symrot_take``. Before the first call of the others, it must be called with the
+    addresses of the three functions that heyoka has compiled.
     """
     sizes, out = _sizes(signature), sum(a.role == "in" for a in signature.arguments)
     return "\n".join([

@@ -1,1 +1,1 @@
-"""Comparisons of symrot's methods with other solvers on a scene: references, work-precision studies, the suite."""
+"""Comparisons of symrot's methods with other solvers on a scene: references, work-precision studies, benchmarks."""

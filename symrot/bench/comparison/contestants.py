@@ -80,10 +80,14 @@ def _no_form(problem: Problem) -> str:
 
 
 def _symrot(method: str) -> Callable[[Problem, float], Run]:
-    """Return the function ``prepare`` of the contestant that uses one of symrot's methods, such as ``"taylor"``."""
+    """Return a function (problem, tolerance) -> run for one of symrot's methods, such as ``"taylor"``.
+
+    The function ``run``, which is timed, computes the motion up to an end time, s; it returns the state there and the
+    number of steps.
+    """
 
     def prepare(problem: Problem, tolerance: float) -> Run:
-        # Not timed. The function ``run`` is timed: from an end time, s, to the state there and the number of steps.
+        # not timed
         propagate = propagator(problem.scene, method, tolerance)
 
         def run(stop: float) -> EndState:
@@ -161,10 +165,13 @@ def _nothing(problem: Problem) -> str:
 
 CONTESTANTS: tuple[Contestant, ...] = (
     Contestant(
-        "exact", "exact", "closed form, without the time of its constants", (0.0,), _no_form,
+        "exact", "exact", "closed form, without the time to compute its constants", (0.0,), _no_form,
         lambda problem, tolerance: _symrot("exact")(problem, 1e-12),
     ),
-    Contestant("exact with set-up", "exact", "closed form, with the time of its constants", (0.0,), _no_form, _exact),
+    Contestant(
+        "exact with set-up", "exact", "closed form, including the time to compute its constants", (0.0,), _no_form,
+        _exact,
+    ),
     Contestant("taylor", "taylor", "Taylor series in C", OURS, _no_series, _symrot("taylor")),
     Contestant("dop853", "dop853", "Dormand-Prince 8(5,3) in C", OURS[:-4], _no_compiler, _symrot("dop853")),
     Contestant(

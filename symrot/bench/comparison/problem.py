@@ -24,8 +24,8 @@ Floats = NDArray[np.float64]
 PARTS = (0.382, 0.618, 0.854, 1.0)
 """Fractions of the span at which errors are measured; one time is not enough, since an error may pass through zero."""
 REST = 1e-3
-"""Where omega is below this fraction of its largest value at the compared times, errors are relative to the fraction
-of the largest value."""
+"""An error of omega is divided by the length of omega, or by this fraction of the largest length at the compared times
+if that is larger."""
 
 
 class State(NamedTuple):
@@ -36,7 +36,7 @@ class State(NamedTuple):
 
 
 class Problem:
-    """A scene with its kernel and the numbers of its parameters, for a comparison of methods."""
+    """A scene with its equations of motion as a kernel, and the values of their parameters, to compare methods."""
 
     def __init__(self, scene: Scene, plan: Plan | None = None) -> None:
         self.scene = scene

@@ -56,7 +56,10 @@ def seconds_of(run: Callable[[], object], repeats: int = 1) -> float:
 
 
 def rounds_for(seconds: float, rounds: int) -> int:
-    """Return in how many rounds a run is timed: ``rounds``, at most :data:`SLOW_ROUNDS` for :data:`SLOW` s or more."""
+    """Return in how many rounds to time a function whose call takes ``seconds``: ``rounds``, or fewer if it is slow.
+
+    For calls of :data:`SLOW` s or more, the number is at most :data:`SLOW_ROUNDS`.
+    """
     return rounds if seconds < SLOW else min(rounds, SLOW_ROUNDS)
 
 

@@ -123,8 +123,8 @@ def reference(problem: Problem, say: Progress = lambda text: None, seconds: floa
     if others and not result.doubt <= CONTRADICTION:
         apart = "; ".join(f"{other} by {difference:.1e}" for other, difference in others)
         raise SymrotError(
-            f"{problem.scene.name}: expected references that agree within {CONTRADICTION:g}, but these differ from "
-            f"{name}: {apart}; one of the references is wrong, or the motion is too unstable over this span"
+            f"{problem.scene.name}: expected references that agree within {CONTRADICTION:g}, but the following "
+            f"differ from {name}: {apart}; one of the references is wrong, or the motion is too unstable over this span"
         )
     return result
 
@@ -241,8 +241,9 @@ def _converged(general: Problem, name: str, files: Sequence[Path], seconds: floa
 
 
 def _grid(problem: Problem) -> list[float]:
-    """Return times at which a fixed step must end, so that no step misses a narrow pulse; empty if there are
-    no pulses.
+    """Return times that integration with fixed steps must not step across, so that no step misses a narrow pulse.
+
+    The list is empty if no torque can have such a pulse.
     """
     # The steps of symrot's dop853 are so short that bounds of the torque exclude a missed pulse. Otherwise a step and
     # its half could both miss a pulse, and agree on a wrong result.

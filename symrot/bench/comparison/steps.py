@@ -2,8 +2,9 @@
 
     python -m symrot.bench.comparison.steps [--rounds 31] [--scenes NAME ..] [--count]
 
-Each tool gets the rates of the scene without common terms and shares terms in its own way. The contestants alternate on
-the same states, and their results are compared.
+Each tool gets the rates of the scene's states as formulas in which no subexpression has a name, and finds the common
+subexpressions itself. The steps of all tools are timed alternately from the same states, and their results are
+compared.
 """
 
 import argparse
@@ -39,9 +40,7 @@ FUNCTIONS = ("sin", "cos", "tan", "sqrt", "exp", "log")
 
 
 def _plain_rates(rates: Program) -> Program:
-    """Return the rates as one formula for each output, without named common terms, as equations of motion are
-    printed.
-    """
+    """Return the rates with each output as one formula, without names for common subexpressions."""
     # The other tools look for common terms themselves.
     known: dict[str, Node] = {}
 
@@ -61,7 +60,7 @@ def _inputs(step: StepText) -> list[str]:
 
 
 def _symforce(step: StepText) -> tuple[str, Counter[str]]:
-    """Return the C text of one step, in which SymForce found the common terms, and its number of operations of each
+    """Return the C text of one step, in which SymForce found the common terms, and the number of operations of each
     kind.
     """
     sf: Any = import_module("symforce.symbolic")
@@ -89,7 +88,7 @@ def _symforce(step: StepText) -> tuple[str, Counter[str]]:
 
 
 def _casadi(step: StepText) -> tuple[str, Counter[str]]:
-    """Return the C text of one step as CasADi generates it, and its number of operations of each kind."""
+    """Return the C text of one step as CasADi generates it, and the number of operations of each kind in the text."""
     import casadi
 
     names = _inputs(step)
@@ -124,8 +123,9 @@ void symrot_repeat(size_t repeats, size_t n, double t, const double *x, const do
 
 
 def _run(step: StepText, text: str) -> Callable[[], tuple[float, Any]]:
-    """Compile one tool's C ``text`` of a step; return a function that returns seconds per step and the states
-    after it.
+    """Compile ``text``, the C function of one time step as a tool generated it, and return a function that times it.
+
+    The returned function makes steps from random states; it returns (seconds per step, states after the step).
     """
     loaded = ctypes.CDLL(
         str(build_cache.build(f"#include <math.h>\n{text}{_driver(step)}", f"bench_{step.name}", FLAGS))
@@ -151,7 +151,7 @@ def _own_text(step: StepText) -> str:
 
 
 def main(arguments: list[str] | None = None) -> None:
-    """Print, for each scene and method, operations and times of symrot's step and of the other tools'."""
+    """Print, for each scene and method, operations and times of one step by symrot and by the other tools."""
     parser = argparse.ArgumentParser(
         prog="python -m symrot.bench.comparison.steps", description=(__doc__ or "").split("\n")[0]
     )
@@ -178,11 +178,12 @@ def main(arguments: list[str] | None = None) -> None:
                 for tool, total in totals.items()
             ]
             print(f"{step.name}: {', '.join(cells)}", flush=True)
-            over += [f"{step.name} {tool}" for tool in totals if totals[tool] < totals["symrot"]]
-            over += [f"{step.name} time {times['symrot'] / times[tool]:.2f} of {tool}" for tool in times
+            over += [f"{step.name}: {tool} needs fewer operations" for tool, count in totals.items()
+                     if count < totals["symrot"]]  # fmt: skip
+            over += [f"{step.name}: {times['symrot'] / times[tool]:.2f} times the time of {tool}" for tool in times
                      if times["symrot"] > 1.05 * times[tool]]  # fmt: skip
     print(f"not installed, left out: {', '.join(sorted(absent))}" if absent else "every tool took part")
-    print(f"fewer operations, or less than 1/1.05 of the time, than symrot: {'; '.join(over) or 'none'}")
+    print(f"steps in which symrot needs more operations, or over 1.05 times the time: {'; '.join(over) or 'none'}")
 
 
 def _times(step: StepText, texts: dict[str, str], rounds: int) -> dict[str, float]:

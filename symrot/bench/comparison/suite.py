@@ -198,8 +198,9 @@ LEGEND = (
 
 
 def lines(results: Mapping[str, Any]) -> list[str]:
-    """Return the table of the suite as lines of text, the first of which is the title; ``results`` come from
-    :func:`run`.
+    """Return, as lines of text with a title, a table of times of other methods divided by symrot's times.
+
+    The table has a row for each motion of the benchmark suite; ``results`` come from :func:`run`.
     """
     rows = _rows(results)
     table = columns(rows, width=room(220), wrap=0, right=range(1, len(rows[0])))
@@ -220,7 +221,7 @@ def page(results: Mapping[str, Any]) -> str:
     versions = ", ".join(f"{name} {machine[name]}" for name in ("python", "numpy", "scipy", "heyoka") if machine[name])
     text = ["# Time against error", "", "", ""]
     quick, took = " --quick" if one["quick"] else "", sum(each["took"] for each in results["studies"].values())
-    text[2] = f"Printed by `symrot bench --suite{quick}` in {took / 60.0:.0f} minutes; seconds are of one machine."
+    text[2] = f"Printed by `symrot bench --suite{quick}` in {took / 60.0:.0f} minutes, on one machine."
     loads = [each["machine"]["load"][0] for each in results["studies"].values() if each["machine"]["load"]]
     busy = f"; {machine['cores']} cores under a load of {min(loads):.1f} to {max(loads):.1f}" if loads else ""
     text += [LEGEND, "", f"{one_line(machine['processor'])}{busy}; {versions}.", ""]

@@ -2,7 +2,7 @@
 
     python -m symrot.bench.comparison.sweeps [--count 1e6] [--seconds 10] [--rounds 3]
 
-Every motion is a damped heavy top with its own rate and weight; a sweep writes three outputs at 11 times to a Zarr
+Every motion is a damped heavy top with its own rate and weight; a sweep writes three quantities at 11 times to a Zarr
 file. The longer the motions, the less the rest of a sweep counts: outputs, files, starts of processes. All contestants
 use the same number of cores, one after the other in each round; the median of the ratios counts. On a busy machine,
 the processor time of client, scheduler and workers tells how many times as fast two workers can be as one.
@@ -115,7 +115,10 @@ def _peak() -> float:
 
 
 def main() -> None:
-    """Print the seconds of each contestant in each round, the ratios, and the largest memory of a process."""
+    """Print a table with a row for each repetition: times of ``propagate_ensemble`` and of sweeps, ratios, memory.
+
+    The sweeps run without Dask, with one Dask worker and with two; the last row has the medians of the ratios.
+    """
     parser = argparse.ArgumentParser(description="sweeps against propagate_ensemble, and two Dask workers against one")
     parser.add_argument("--count", type=float, default=1e6)
     parser.add_argument("--seconds", type=float, default=10, help="length of each motion, s")
@@ -138,7 +141,7 @@ def main() -> None:
                      f"{two.workers:.1f} s", f"{two.client:.1f} s", f"{two.attainable:.2f}"))  # fmt: skip
     sweeps, workers, attainable = (median(each) for each in zip(*ratios, strict=True))
     rows.append(("median", "", "", f"{sweeps:.2f}", "", "", "", f"{workers:.2f}", "", "", f"{attainable:.2f}"))
-    print(f"{count} damped tops over {options.seconds:g} s, three outputs at 11 times, {number} cores")
+    print(f"{count} damped tops over {options.seconds:g} s, three quantities at 11 times each, {number} cores")
     print("\n".join(columns(rows)))
 
 

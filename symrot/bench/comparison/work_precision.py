@@ -124,7 +124,10 @@ def digest(problem: Problem) -> str:
 def _entries(
     problem: Problem, contestants: Sequence[Contestant], effort: Effort, exact: Sequence[State], say: Progress
 ) -> tuple[list[Entry], list[dict[str, str]]]:
-    """Return one entry with its error for each method and tolerance, and the skipped methods with reasons."""
+    """Return (entries, skipped): an entry with error and steps for each method and tolerance, and the methods left out.
+
+    A dict in ``skipped`` has a method's name (``method``) and the reason (``why``) for all or some of its tolerances.
+    """
     entries: list[Entry] = []
     skipped = []
     for contestant in contestants:
@@ -197,10 +200,11 @@ def decades(runs: Sequence[dict[str, Any]], floor: float = 0.0) -> list[dict[str
 
 
 def against(rows: Sequence[dict[str, Any]]) -> list[dict[str, Any]]:
-    """Return, for each program in ``rows`` (:func:`decades`) other than symrot, its times divided by symrot's.
+    """Compare each program other than symrot with symrot: its times divided by symrot's times at equal error.
 
-    A dict of the list has the program's name (``peer``) and the ratios to symrot's steppers (``stepped``) and to all
-    methods of symrot (``all``): ``median``, ``least``, and ``ratios``, which has one for each bound of the error.
+    ``rows`` come from :func:`decades`. The result has one dict for each program, such as ``{"peer": "heyoka",
+    "stepped": {"median": 3.0, "least": 2.0, "ratios": {"1e-06": 2.0, "1e-07": 4.0}}, "all": ..}``. The ratios are to
+    symrot's fastest stepper (``stepped``), and to its fastest method, closed forms included (``all``).
     """
     peers = list(dict.fromkeys(name for row in rows for name in row["methods"] if name not in (*OURS, "symrot scipy")))
     settings = [name for name in peers if name.startswith("heyoka")]

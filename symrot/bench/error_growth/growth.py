@@ -181,8 +181,8 @@ class Method(NamedTuple):
 
 METHODS = (
     Method("exact", "closed form", math.inf, math.inf, _exact),
-    Method("taylor", "Taylor series, low digits projected onto the invariants", math.inf, math.inf, _taylor(True)),
-    Method("taylor, plain", "the same without projection", math.inf, math.inf, _taylor(False)),
+    Method("taylor", "Taylor series, last digits corrected to keep the invariants", math.inf, math.inf, _taylor(True)),
+    Method("taylor, plain", "the same without this correction", math.inf, math.inf, _taylor(False)),
     Method("dop853", "Dormand-Prince 8(5,3) in C", math.inf, math.inf, _dop853),
     Method("SciPy DOP853", "solve_ivp at its least rtol", 1e3, 1e4, _scipy),
     Method("RK4, normalised", "200 steps per revolution, q renormalised after each step", 1e5, 1e6, _rk4(True)),
@@ -191,7 +191,10 @@ METHODS = (
 
 
 def growth(track: Track, long: bool = False, say: Callable[[str], object] = lambda text: None) -> list[Curve]:
-    """Return the error curves of all methods that can compute this motion; ``long`` runs them for more revolutions."""
+    """Return the error curves of all methods that can compute the motion of ``track``.
+
+    With ``long``, the methods run for more revolutions; ``say`` receives a line of progress for each method.
+    """
     curves = []
     for method in METHODS:
         say(f"{track.scene.name}: {method.name} ..")

@@ -33,9 +33,10 @@ class Carried(NamedTuple):
 
 
 def laws() -> list[tuple[str, bool]]:
-    """Return formulas for the length of a position r after one tangent or secant step, with the result of their proof.
+    """Try to prove three formulas for the length of a position r after one step; return (formula, whether proven).
 
-    Each pair is (formula, whether it was proven); the steps are those at the top of this module.
+    Two formulas are for the tangent step ``r' = r + h omega x r``, one for the secant step ``r' = r + h omega x (r +
+    r')/2``.
     """
     from sympy import Matrix, eye, symbols
 
@@ -99,9 +100,10 @@ SCHEMES = {
 
 
 def carried(scene: Scene, stop: float, steps: tuple[float, ...], size: Any = (1.0, 2.0, 3.0)) -> list[Carried]:
-    """Move the corners of a box along a motion, with each scheme and each step size of ``steps``, s.
+    """Move the corners of a box along a motion in steps; return how much the box grows and deforms.
 
-    Return one :class:`Carried` for each scheme and step size.
+    The result has one :class:`Carried` for each step size of ``steps``, s, and each scheme in ``SCHEMES``, such as the
+    tangent step ``r' = r + h omega x r``. ``size`` holds the edges of the box.
     """
     points, results = _corners(size), []
     motion = propagator(scene)

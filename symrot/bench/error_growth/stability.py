@@ -70,7 +70,7 @@ def stability(scene: Scene | None = None, long: bool = False, say: Callable[[str
     results["points"] = [
         {"motion": name, **each._asdict()}
         for name, body, omega, size in (
-            ("steady, points perpendicular to the axis", {"principal": [1, 2, 3]}, (0, 0, 1), (1.0, 2.0, 0.0)),
+            ("steady, position perpendicular to axis", {"principal": [1, 2, 3]}, (0, 0, 1), (1.0, 2.0, 0.0)),
             ("chen, p. 23: cylinder", CYLINDER, (1, 0, 1), (1.0, 1.0, 3.0)),
         )
         for each in carried(_scene(name, body, omega), CARRIED_FOR, STEPS, size)
@@ -199,7 +199,7 @@ def _growth_lines(data: Any) -> list[str]:
     right = DIGITS if not error else math.floor(-math.log10(error))
     text_lines = [
         data["title"], "",
-        f"error of the attitude, rad, compared with a series in {DIGITS} digits, {right} of them right at the end",
+        f"error of the attitude, rad, compared with a series in {DIGITS} digits, {right} of them correct at the end",
     ]  # fmt: skip
     rows = [["  method", *heads, *(["grows as"] if "exponents" in data["curves"][0] else [])]]
     drifts = [["  method", *heads, *rows[0][len(heads) + 1 :], "norm of q"]]
@@ -215,8 +215,12 @@ def _growth_lines(data: Any) -> list[str]:
     aligned = tuple(range(1, len(drifts[0])))
     invariant_names = [name for name in data["curves"][0]["invariants"] if name != "quaternion norm"]
     text_lines += columns(rows, right=aligned[:-1])
-    text_lines += ["", f"largest relative drift of {', '.join(invariant_names) or 'nothing: no invariant'}; "
-              "and of the norm of the quaternion, on the way", *columns(drifts, right=aligned)]  # fmt: skip
+    text_lines += [
+        "",
+        f"largest relative drift of {', '.join(invariant_names) or 'invariants (there are none)'}, "
+        "and in the last column that of the norm of the quaternion during the whole motion",
+        *columns(drifts, right=aligned),
+    ]
     notes = "; ".join(f"{each.name}: {each.about}" for each in METHODS)
     if data["variable"] == "revolutions":
         notes += f". Powers are fitted from {FROM:.0f} revolutions on; rounding alone grows as t^0.5 in an invariant, "

@@ -115,7 +115,7 @@ def _slopes(axes: Any, at: Any, powers: tuple[float, ...]) -> None:
 
 def _passes(axes: Any, rows: Any) -> None:
     names = {"quaternion": ("quaternion", COLOURS[0]), "switching": ("Euler angles, switched", COLOURS[2]),
-             "angles": ("Euler angles alone", COLOURS[1])}  # fmt: skip
+             "angles": ("Euler angles, not switched", COLOURS[1])}  # fmt: skip
     near = [row for row in rows if row["distance"] > 0]
     for key, (label, colour) in names.items():
         points = [(row["distance"], row[key]["steps"]) for row in near if "steps" in row[key]]
@@ -126,7 +126,7 @@ def _passes(axes: Any, rows: Any) -> None:
     axes.set_ylim(0, None)
     axes.grid(True)
     axes.set_title("Steps past gimbal lock, by state")
-    axes.set_xlabel("least distance to gimbal lock (rad); at 0 the angles alone fail")
+    axes.set_xlabel("least distance to gimbal lock (rad); at 0 only unswitched Euler angles fail")
     axes.set_ylabel("steps")
     axes.legend(loc="upper left")
 

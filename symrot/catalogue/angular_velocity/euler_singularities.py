@@ -14,7 +14,7 @@ from symrot.proof.notation.printer import formula
 THETA = symbols.theta
 SCALE = Symbol("lambda", real=True)
 EXAMPLE = "ZYX"
-"""The sequence whose proof the page prints step by step; tables have the results for the other sequences."""
+"""The Euler sequence whose proof is printed step by step; tables have the results for the other sequences."""
 
 
 def derive() -> Derivation:
@@ -85,7 +85,7 @@ def _condition(d: Derivation, sequence: str) -> Step:
 def _cofactors(d: Derivation, sequence: str) -> Step:
     jacobian = rate_jacobian(sequence)
     return d.step(
-        "The product of the determinant of $B$ and its inverse has no denominator, so it is finite at every angle.",
+        "The inverse of $B$ times the determinant of $B$ has no denominator, so this product is finite at every angle.",
         jacobian.determinant * jacobian.inverse,
         jacobian.adjugate(method="berkowitz"),
         because=r"$B^{-1} \det B$ is the matrix of cofactors of $B$",

@@ -1,4 +1,7 @@
-"""Quaternion rates from the angular velocity in body and in space components, by the rate of the rotation matrix."""
+"""Quaternion rates from the angular velocity, in body and in space components.
+
+The proof shows that with these rates the rotation matrix of the quaternion rotates with the angular velocity.
+"""
 
 from sympy import Matrix, eye
 

@@ -127,7 +127,7 @@ def _projection(d: Derivation, which: Projection, form: ProjectionForm) -> None:
         display=form.omega[1],
     )
     d.step(
-        "So is the angular velocity in space.",
+        "The angular velocity in space is also linear in the rates of the parameters.",
         dcm_rate,
         skew(space * rates) * dcm_sb,
         because="the matrix is differentiated by the chain rule",

@@ -122,7 +122,10 @@ def _all(d: Derivation) -> None:
 
 
 def _step(d: Derivation, sequence: str) -> Step:
-    """Add the step that states: the quaternion of Euler parameters gives the rotation matrix of the Euler sequence."""
+    """Add the step that proves: the quaternion of an Euler ``sequence`` has the rotation matrix of the sequence.
+
+    The quaternion is the product of the quaternions of the three rotations; its components are the Euler parameters.
+    """
     return d.step(
         f"The Euler parameters give the rotation {sequence}.",
         quaternion_to_dcm(quaternion_of_euler(sequence)),

@@ -86,7 +86,7 @@ def derive() -> Derivation:
         "The angular momentum of a rotor along the axis causes no torque.",
         angular_acceleration(inertia, spinning, Matrix([0, 0, 0]), Matrix([0, 0, symbols.h_3])),
         0,
-        because="angular velocity and the angular momentum of the rotor are parallel",
+        because="the angular velocity of the body and the angular momentum of the rotor are parallel",
         named=r"\dot\omega_b",
     )
     d.passage(

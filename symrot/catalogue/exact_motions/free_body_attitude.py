@@ -67,8 +67,7 @@ def _two_turns(d: Derivation) -> None:
     d.passage(
         "Let axis 3 of space be along the angular momentum. The angular momentum has the length $H$ and the body "
         r"components $L_1, L_2, L_3$, with $\omega = I^{-1} L$ and moments $A, B, C$ in any order. The attitude is "
-        r"the product of the smallest rotation $P$ that takes $L$ to axis 3, and a following rotation by $\psi$ about "
-        "axis 3:",
+        r"the smallest rotation $P$ that takes $L$ to axis 3, followed by a rotation by $\psi$ about axis 3:",
         ("R", r"R_3(\psi)\,P"),
         ("P", smallest_turn()),
     )

@@ -16,8 +16,8 @@ MIDDLE = A * C * (ONE**2 + THREE**2) / (C * ONE**2 + A * THREE**2)
 """Formula of the intermediate moment B on the separatrix, from H^2 = 2 T B and the momentum at t = 0."""
 SPEED = SIGN * THREE * (C - MIDDLE) / (MIDDLE * C) * H / ONE
 RELATIONS = [H**2 - ONE**2 - THREE**2, SIGN**2 - 1]
-SHARE = Symbol("h")
-"""Symbol for the function of time h = tanh(p t/2) with the rate p in 1/s; the motion is a rational function of h."""
+HALF_TANH = Symbol("h")
+"""Symbol for the function h = tanh(p t/2) of time, with p in 1/s; the angular momentum is a rational function of h."""
 
 
 def derive() -> Derivation:
@@ -31,7 +31,7 @@ def derive() -> Derivation:
             "opposite steady rotation. Angular velocity and attitude are elementary functions of time."
         ),
     )
-    h = SHARE
+    h = HALF_TANH
     d.passage(
         "The page on [the attitude](free_body_attitude.md) explains the notation: at $t = 0$, halfway through the "
         r"motion, the angular momentum has the components $\ell_1, 0, \ell_3$ with $H^2 = \ell_1^2 + \ell_3^2$. On "
@@ -102,13 +102,13 @@ def derive() -> Derivation:
 
 
 def _momentum() -> Matrix:
-    h = SHARE
+    h = HALF_TANH
     return Matrix([ONE * (1 - h**2), SIGN * H * 2 * h, THREE * (1 - h**2)]) / (1 + h**2)
 
 
 def _attitude(d: Derivation, momentum: Matrix, omega: Matrix) -> None:
     d.section("The attitude")
-    h = SHARE
+    h = HALF_TANH
     values = pairs(symbols.momentum_b, momentum)
     speed = turning_rate().subs(T, momentum.dot(omega) / 2).subs(values)
     about = Matrix([[cos(PSI), -sin(PSI), 0], [sin(PSI), cos(PSI), 0], [0, 0, 1]])
@@ -154,4 +154,4 @@ def _attitude(d: Derivation, momentum: Matrix, omega: Matrix) -> None:
 
 def _share(speed: Expr) -> dict[Symbol, Expr]:
     """Return a map from the symbol h = tanh(p t/2) to its time derivative, for the frequency p = ``speed``."""
-    return {SHARE: speed * (1 - SHARE**2) * Rational(1, 2)}
+    return {HALF_TANH: speed * (1 - HALF_TANH**2) * Rational(1, 2)}

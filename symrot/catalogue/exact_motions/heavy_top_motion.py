@@ -127,7 +127,7 @@ def _rates(d: Derivation) -> None:
         named=r"\begin{bmatrix} \dot\phi + \dot\psi \\ \dot\phi - \dot\psi \end{bmatrix}",
     )
     d.step(
-        "Each rate alone is singular in both directions.",
+        "The rate of precession alone is singular if the axis points straight up or straight down.",
         dphi,
         (P_PHI + P_PSI) / (2 * A * (1 + u)) + (P_PHI - P_PSI) / (2 * A * (1 - u)),
         because=r"$\dot\phi$ is half the sum of the two rates",

@@ -156,8 +156,8 @@ def _spherical(d: Derivation) -> None:
         display=r"\frac{2 W c_3}{A} (u - u_1)(u - u_2)(u - u_3)",
     )
     d.step(
-        r"The square of $p_\phi$ is not negative only if $u_1 + u_2 \le 0$: the mean of the heights $u_1$ and "
-        "$u_2$ is below the support.",
+        r"The square of $p_\phi$ cannot be negative, so $u_1 + u_2 \le 0$: the mean of the heights $u_1$ and $u_2$ is "
+        "not above the support.",
         square * (U1 + U2),
         -2 * A * W * ARM * (1 - U1**2) * (1 - U2**2),
         because="$1 - u^2$ is not negative",

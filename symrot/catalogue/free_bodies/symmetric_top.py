@@ -95,7 +95,7 @@ def derive() -> Derivation:
         "angular velocity.",
         OMEGA.dot(momentum.cross(AXIS)),
         0,
-        because="the angular velocity is a linear combination of the other two",
+        because="the angular velocity is a linear combination of the other two vectors",
         named=r"\omega \cdot (L \times e_3)",
     )
     d.step(

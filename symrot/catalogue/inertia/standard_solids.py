@@ -20,9 +20,9 @@ MEASURE = {"solid": "V", "surface": "S", "curve": r"\ell"}
 PRODUCTS = ((0, 1), (0, 2), (1, 2))
 LONG, WIDE = 300, 140  # characters of LaTeX of a reason, and of a cell of a table
 EXAMPLE = "cone"
-"""The body whose proof the page of this derivation prints in full; tables have a row for each other body."""
+"""The body whose proof is printed in full; tables have a row for each other body."""
 DRAWN = "The bodies with their axes"
-"""Title of the section of the page with the figures of all bodies except :data:`EXAMPLE`."""
+"""Title of the section of the printed derivation with the figures of all bodies except :data:`EXAMPLE`."""
 SPECIAL = {"tetrahedron": {"vertices": [(0, 0, 0), (symbols.a, 0, 0), (0, symbols.b, 0), (0, 0, symbols.c)]}}
 """Name of a body -> arguments of :func:`symrot.inertia.solids.solid` that simplify the body without loss of generality.
 
@@ -72,7 +72,11 @@ def _argument(d: Derivation, body: Solid) -> None:
 
 
 def _tabulate(d: Derivation, bodies: Sequence[Solid]) -> None:
-    """Print the maps of bodies as one table, their moments of inertia as another, and the rest as a third."""
+    """Add three tables of ``bodies``: their parametrisations, their moments of inertia, and centres and products.
+
+    A parametrisation maps the integration coordinates to the point (x, y, z). The third table has only bodies whose
+    centre of mass is not the origin, or that have a product of inertia.
+    """
     maps = []
     for body in bodies:
         jacobian, measure = (f"${formula(value)}$" for value in (body.jacobian, body.measure))
@@ -95,8 +99,8 @@ def _tabulate(d: Derivation, bodies: Sequence[Solid]) -> None:
         results,
     )
     d.tabulate(
-        "The same steps prove the centres of mass and the products of inertia. All other bodies have their centre of "
-        "mass at the origin, and their axes are principal axes.",
+        "The same steps prove the formulas for the centres of mass and the products of inertia. The bodies that are "
+        "not in this table have their centre of mass at the origin, and their axes are principal axes.",
         ("Body", "$c$", "$I_{xy}$", "$I_{xz}$", "$I_{yz}$"),
         [
             ((_title(body), _center_cell(body), *_product_cells(body.inertia)), ())
@@ -128,7 +132,7 @@ def _center_cell(body: Solid) -> str:
 
 
 def _moment_cells(tensor: Matrix) -> list[str]:
-    """Return the three moments of an inertia tensor as LaTeX; a moment equal to an earlier one names that one."""
+    """Return the three moments of an inertia tensor as LaTeX; for a moment equal to I_xx, for instance, ``= I_xx``."""
     moments = [tensor[i, i].factor() for i in range(3)]
     cells = []
     for i, moment in enumerate(moments):
@@ -138,7 +142,7 @@ def _moment_cells(tensor: Matrix) -> list[str]:
 
 
 def _terms(moment: Expr) -> Iterator[str]:
-    """Yield a moment of inertia as LaTeX; a long one as the sum of a term without the height and a term with it."""
+    """Yield a moment of inertia as LaTeX; a long one in parts, one for each power of the body's height h."""
     if len(formula(moment)) <= WIDE:
         yield formula(moment)
         return
@@ -159,7 +163,7 @@ def _claim(prefix: str, claim: str) -> str:
 def _measure(d: Derivation, body: Solid, prefix: str = "") -> list[Step]:
     """Add and return two steps: the Jacobian of the map from coordinates to points of a body, and the body's measure.
 
-    The measure is the volume, area or length; ``prefix`` begins the claims of these steps.
+    The measure is the volume, area or length. The sentence that each step states begins with ``prefix``.
     """
     coordinates = [variable for variable, _, _ in body.limits]
     letter = MEASURE[body.shape.kind]
@@ -192,7 +196,10 @@ def _limits(body: Solid) -> str:
 
 
 def _moments(d: Derivation, body: Solid, prefix: str = "") -> list[Step]:
-    """Add and return the steps for the moments of a body and its inertia tensor; ``prefix`` begins their claims."""
+    """Add and return the steps that prove the first and second moments of a body and its inertia tensor.
+
+    The sentence that each step states begins with ``prefix``, such as ``"Cone: "``.
+    """
     letter, steps = MEASURE[body.shape.kind], []
     moments: Moments = {}
     products: list[tuple[int, ...]] = [(0,), (1,), (2,), (0, 0), (1, 1), (2, 2), *PRODUCTS]

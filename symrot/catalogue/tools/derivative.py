@@ -10,7 +10,7 @@ __all__ = ["derivative"]
 # SymPy asks of the derivative of each term and factor whether the signs of its symbols make it zero
 @lru_cache(maxsize=50_000)
 def derivative(expression: Expr, variable: Symbol) -> Expr:
-    """Return the derivative of ``expression`` by ``variable``, in the form of ``expression.diff(variable)``."""
+    """Return the same derivative as ``expression.diff(variable)``, but faster and cached."""
     parts = expression.args
     if expression == variable:
         return S.One

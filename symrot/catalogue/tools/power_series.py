@@ -1,4 +1,4 @@
-"""Power series that solve linear differential equations: the coefficient of any power, for a symbolic index."""
+"""Power series that solve linear differential equations: a formula for their n-th coefficient, with a symbol n."""
 
 from collections.abc import Mapping
 

@@ -18,9 +18,10 @@ V, X, R, KAPPA = Symbol("v"), Symbol("x"), Symbol("r"), Symbol("kappa")
 
 
 def far(d: Derivation) -> None:
-    """Add steps to the derivation ``d``: recurrences of the series for times at which Omega is far from zero.
+    """Add steps to the derivation ``d``: recurrences for two series that are used far from resonance.
 
-    These series describe a vector that is fixed in space, and the small angle of rotation about this vector.
+    Far from resonance, the linearly growing rate Omega is far from zero. The series describe a vector that is fixed in
+    space, and the small angle of rotation about this vector.
     """
     d.section("The coefficients far from resonance")
     _vector(d)
@@ -120,7 +121,11 @@ def _small_angle(d: Derivation) -> None:
 
 
 def near(d: Derivation) -> None:
-    """Add steps to the derivation ``d``: Taylor series of the attitude for times near resonance, and their symmetry."""
+    """Add steps to the derivation ``d``: Taylor series of the attitude, used near resonance, and a symmetry in time.
+
+    Resonance is the time x = 0, at which the rate Omega is zero. If the quaternion is 1 at this time, the quaternions
+    at times x and -x differ only in the signs of q1 and q2.
+    """
     d.section("Near resonance")
     place, step = Symbol("X"), Symbol("u")
     names = r"\alpha", r"\beta"
@@ -156,7 +161,7 @@ def near(d: Derivation) -> None:
         "the sign of $q_1$ and $q_2$.",
         rate(pair, back),
         Rational(1, 2) * Matrix([I * X * pair[0] - KAPPA * pair[1], KAPPA * pair[0] - I * X * pair[1]]),
-        because="time and sweep both change sign",
+        because=r"$x$, $\frac{d}{dx}$ and $\beta$ change sign",
         relations=[imaginary()],
         named=r"\frac{d}{dx} \begin{bmatrix} \alpha(-x) \\ -\beta(-x) \end{bmatrix}",
     )
@@ -238,9 +243,9 @@ def weak(d: Derivation) -> None:
 
 
 def _by_legendre(c: Expr) -> dict[Symbol, Expr]:
-    """Return a map from a_{k+1}, a_k, a_{k-1} to their formulas in the Legendre polynomials P_k(-c) and P_{k-1}(-c).
+    """Return formulas for the coefficients a_{k+1}, a_k and a_{k-1} of the power series of ``sqrt(1 + 2 c h + h^2)``.
 
-    These are coefficients of the power series of ``sqrt(1 + 2 c h + h^2)`` in h.
+    The series is in h; the formulas are in the Legendre polynomials P_k(-c) and P_{k-1}(-c).
     """
     # P_k and P_{k-1} at -c
     above, below = Symbol("P_{k}"), Symbol("P_{k-1}")
@@ -251,9 +256,9 @@ def _by_legendre(c: Expr) -> dict[Symbol, Expr]:
 
 
 def between(d: Derivation) -> None:
-    """Add steps to the derivation ``d``: a formula for the growth of the phase, without cancellation of digits.
+    """Add steps to the derivation ``d``: a formula for the integral of ``sqrt(Omega^2 + W^2)`` between two times.
 
-    The growth between two times is a sum of two positive terms.
+    The formula is a sum of two positive terms, so no digits cancel. The integral is the growth of the phase.
     """
     d.section("Between two times")
     omega, start, speed, there, across = (Symbol(name) for name in ("Omega", "Omega_0", "S", "S_0", "W"))

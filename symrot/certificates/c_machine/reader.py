@@ -1,4 +1,4 @@
-"""The C text as the machine reads it: its tokens, its types, and what it has declared so far."""
+"""Reading a C text for the class ``Machine``, which runs C in Python: tokens, types, and names declared so far."""
 
 from collections.abc import Callable, Mapping
 from fractions import Fraction
@@ -18,7 +18,7 @@ _QUALIFIERS = {"const", "static", "inline", "volatile", "restrict", "extern"}
 
 
 class Reader:
-    """The state of reading a C text. Parameters as of :class:`symrot.certificates.c_machine.machine.Machine`."""
+    """The state of reading a C text; for parameters see :class:`symrot.certificates.c_machine.machine.Machine`."""
 
     def __init__(
         self, text: str, number: Callable[[Fraction], Any], own: Mapping[str, tuple[str, Callable[..., Any]]]

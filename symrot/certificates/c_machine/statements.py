@@ -37,7 +37,7 @@ def _jump(jump: type[Exception], value: Run = lambda f: None) -> Run:
 
 
 class Statements(Declarations):
-    """Reader of statements: each becomes a function that runs it."""
+    """Reader of C statements: each is compiled to a Python function that executes the statement."""
 
     def _block(self) -> Run:
         self._expect("{")

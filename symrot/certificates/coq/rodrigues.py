@@ -44,9 +44,9 @@ def _norm(parameters: tuple[str, ...], at: str = "") -> str:
 
 
 def _positive(parameters: tuple[str, ...], at: str = "") -> str:
-    """Return the text of a Coq tactic that proves that 1 plus the squared ``parameters`` is positive, or not zero.
+    """Return a Coq tactic that proves the goal ``0 < S`` or ``S <> 0``, with S = 1 plus the squared ``parameters``.
 
-    ``at`` is as for :func:`_norm`, which writes that sum.
+    The sum S is the text of :func:`_norm`, which describes ``at`` too.
     """
     return "(" + "; ".join(f"pose proof (pow2_ge_0 ({each}{at}))" for each in parameters) + "; lra)"
 

@@ -1,1 +1,1 @@
-"""Certificates of exact steps: that the C text is the motion, and bounds of its errors in double precision."""
+"""Certificates of exact steps: the C text computes the exact motion, up to errors in double precision with bounds."""

@@ -23,7 +23,8 @@ _GROW = 1 + 2.0**-40  # more than the rounding errors of a computed bound
 class UndecidedError(Exception):
     """Raised for a decision of the C program, such as a comparison, that may differ between inputs of the box.
 
-    Code that bounds errors then divides the box. It is also raised where no bound is known, such as near 0 for an agm.
+    Code that bounds errors then divides the box. The exception is also raised where no bound is known, such as near 0
+    for an arithmetic-geometric mean.
     """
 
 
@@ -174,7 +175,7 @@ class Bounded:
 
     @property
     def computed(self) -> tuple[float, float]:
-        """The pair of the least and the largest value that the C program may have computed for inputs of the set."""
+        """The least and the largest double that the C program may have computed for this number, over all inputs."""
         below, above = (min(self.error, self.relative * abs(end) if end else 0.0) for end in (self.low, self.high))
         if self.relative >= 1:
             below = above = self.error
@@ -215,7 +216,7 @@ class Bounded:
 
 
 def point(value: float) -> Bounded:
-    """Return the double ``value`` as a number without error, the same for all inputs of the set."""
+    """Return the double ``value`` as a :class:`Bounded` that is exact and is the same for all inputs."""
     return Bounded(value, value, 0.0, 0.0)
 
 

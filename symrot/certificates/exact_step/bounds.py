@@ -153,8 +153,8 @@ class _Context:
         """Store sine and cosine of ``rate*t + start``, as the C function ``turn`` does, with bounds of their errors.
 
         ``phase`` points to rate and start, each a sum of two doubles, in revolutions. ``count`` pairs are stored, all
-        equal, for the interval of times at ``t``. ``slope``, a factor of ``whole``, must be 0, else InputError is
-        raised, as for steps of too many revolutions; ``whole`` is not used.
+        equal, for the interval of times at ``t``. The C function adds ``slope*whole`` to the phase; here ``slope`` must
+        be 0 and ``whole`` is ignored. InputError is raised for another slope, and for steps of too many revolutions.
         """
         values, first = phase
         rate, start = pair_total([values[first], values[first + 1]]), pair_total([values[first + 2], values[first + 3]])
@@ -252,9 +252,10 @@ def _normalise(q: Place) -> None:
 
 
 def _quaternion_product(a: Place, b: Place, c: Place) -> None:
-    """Store, at ``c``, the product of the quaternions at ``a`` and ``b``, of norm 1, with bounds of its errors.
+    """Store at ``c`` the product of the quaternions at ``a`` and ``b``, with bounds of its errors.
 
-    One of them may also be the quaternion 0 of a body at rest.
+    Each of the two has norm 1, or is 0: the C text has the quaternion 0 in place of the axis of rotation of a body at
+    rest.
     """
     left, right = _pairs_at(a, 4), _pairs_at(b, 4)
     error = 4 * (max(x.error for x in left) + max(x.error for x in right)) + 64 * PAIR

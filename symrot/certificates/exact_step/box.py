@@ -24,9 +24,10 @@ Part = tuple[tuple[float, float], ...]  # the range of each component of omega
 
 
 def signed_parts(box: Box) -> Iterator[Part]:
-    """Yield the parts of a box of omega in which no component changes its sign: it is negative, zero or positive.
+    """Split a box of omega by the signs of its components: in a part, each is negative, zero or positive throughout.
 
-    Components that are smaller than TINY of the largest, but not zero, are left out.
+    The parts leave out values of a component that are not zero but below TINY times the largest component in the box.
+    InputError is raised if all values of a component are left out.
     """
     ends = [(float(low), float(high)) for low, high in (box[f"omega_{i}"] for i in (1, 2, 3))]
     least = max(max(max(abs(low), abs(high)) for low, high in ends) * TINY, ulp(0.0))
@@ -45,8 +46,9 @@ def signed_parts(box: Box) -> Iterator[Part]:
 
 
 def shells(part: Part) -> Iterator[tuple[float, Part]]:
-    """Yield pairs (power of two, sub-part): the C text divides omega in this sub-part of ``part`` by the power.
+    """Split a part of the box of omega by the power of two that scales omega there: yield pairs (power, sub-part).
 
+    The C text divides omega by a power of two near its largest component, so the power changes within a part.
     InputError is raised for a part that reaches nearly to omega = 0.
     """
     smallest = max(min(abs(low), abs(high)) for low, high in part)
@@ -66,7 +68,10 @@ def shells(part: Part) -> Iterator[tuple[float, Part]]:
 
 
 def _power(exponent: int) -> float:
-    """Return the power of two by which the C text divides numbers; ``exponent`` is that of the largest of them."""
+    """Return the power of two by which the C text divides omega: ``2**exponent``, within the range of the C text.
+
+    ``exponent`` is that of the largest component of omega, as :func:`math.frexp` returns it.
+    """
     return 2.0 ** min(max(exponent, LEAST_POWER), LARGEST_POWER)
 
 

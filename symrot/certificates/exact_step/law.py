@@ -22,7 +22,9 @@ from symrot.formula.program import Program
 __all__ = ["DIGITS", "STATES", "law_section"]
 
 DIGITS = 15
-"""Decimal digits to which F(x, 0) = x and dF/d(dt) = rates at F must hold at each tested state x."""
+"""Decimal digits to which the step F(x, dt), computed by the C text from a tested state x, must be the motion.
+
+The two checked equations are F(x, 0) = x, and: the derivative of F by the step size dt is the rates at F."""
 LIMIT = Decimal(10) ** -DIGITS
 PRECISION = 60  # digits of the numbers
 STATES = 12
@@ -105,7 +107,7 @@ def _number(value: Fraction) -> Decimal:
 
 
 def _rint(x: Any) -> Decimal:
-    """Return the whole number nearest to ``x``, whose derivative by dt is zero."""
+    """Return the whole number nearest to ``x``; as a Decimal it is a constant, whose derivative by dt is zero."""
     return _slope(x).value.to_integral_value(ROUND_HALF_EVEN)
 
 

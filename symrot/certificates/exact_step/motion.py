@@ -1,4 +1,4 @@
-"""The proof that the C text of an exact step is the motion: it solves the differential equations of the rates.
+"""The proof that the C text of an exact step computes the motion: it solves the differential equations of the rates.
 
 With the C text read as exact formulas F(x, dt), two equations are proven: F(x, 0) = x, and dF/d(dt) is the rates at F.
 Their only solution is the motion. Both are compared at random points, modulo a prime, where a square root is a root of
@@ -65,17 +65,17 @@ def motion_section(file: str, rates: Program, places: Mapping[str, str], operati
     Raises
     ------
     CertificateError
-        If the C function is not the motion.
+        If the C function does not compute the motion.
     """
     degrees = [_degree(file, rates, places, operations, point) for point in range(POINTS)]
     return {"law": LAW, "points": POINTS, "wrong_with_probability_below": probability(max(degrees), FACTOR)}
 
 
 def _degree(file: str, rates: Program, places: Mapping[str, str], operations: Operations, point: int) -> int:
-    """Check the two equations F(x, 0) = x and dF/d(dt) = rates at one random point; return a bound of their degree.
+    """Check at one random point that the C text F(x, dt) has F(x, 0) = x and dF/d(dt) = rates at F.
 
-    The degree, as rational functions of the inputs, is counted along with the values; it bounds the probability that
-    wrong equations hold at the point. CertificateError is raised if an equation is violated.
+    Return a bound of the degree of the two equations, as rational functions of the inputs; it bounds the probability
+    that wrong equations hold at the point. CertificateError is raised if an equation is violated.
     """
     for attempt in count():
         values = {
@@ -113,7 +113,7 @@ def _compared(
 
 
 def _step(operations: Operations, places: Mapping[str, str], values: Mapping[str, Residue]) -> list[Dual]:
-    """Return the state after a step with its derivatives by dt, at one point."""
+    """Return the components of the state after a step from one point, each with its derivative by dt."""
     number = exact(operations.precision)
     inputs = {
         place: Dual(values[symbol], {SIZE: Residue(1)} if symbol == SIZE else {}) for place, symbol in places.items()

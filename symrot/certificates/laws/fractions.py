@@ -1,7 +1,7 @@
 """Exact arithmetic with fractions of polynomials over the rationals, and SymPy formulas as such fractions.
 
-Proofs of laws use it, and proofs that a C text computes its formulas. :mod:`symrot.certificates.exact_check` checks
-both independently, without polynomials.
+The proofs of laws use it, and the proofs that a C text computes its formulas. Both kinds of proof are checked
+independently, without polynomials, by :mod:`symrot.certificates.exact_check`.
 """
 
 from abc import ABC, abstractmethod

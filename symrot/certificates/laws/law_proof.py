@@ -341,9 +341,10 @@ class LawProver(FormulaReader):
         return result if times > 0 else (result[0], (-result[1][0], result[1][1]))
 
     def _base(self, unit: PolyElement, coefficient: Fraction) -> Fraction:
-        """Return b, where ``b*unit`` is the base angle for the angle ``unit``: 1/2 if the law contains x/2 and x.
+        """Return b such that the angles of the law are integer multiples of ``b*unit``, the base angle of ``unit``.
 
-        BaseAngleTooLarge is raised if ``coefficient*unit`` is no integer multiple of the base angle.
+        For ``unit`` = x, b is 1/2 if the law contains x/2 and x. BaseAngleTooLarge is raised if ``coefficient*unit`` is
+        no integer multiple of the base angle that was assumed so far.
         """
         if unit in self.angle_functions and unit in self.arcs.values():
             if coefficient.denominator != 1:
@@ -363,7 +364,7 @@ class LawProver(FormulaReader):
         return known
 
     def _pair(self, unit: PolyElement, angle: PolyElement) -> tuple[Quotient, Quotient]:
-        """Return the pair (cosine, sine) of ``angle``, the base angle of a monomial ``unit``: x/2 or x itself for x.
+        """Return the pair (cosine, sine) of ``angle``, the base angle (:meth:`_base`) of ``unit``, such as x/2 for x.
 
         The first call for ``unit`` makes two new generators, variables of the polynomials; later calls return the same
         pair. For an arc tangent, cosine and sine are the fractions found by :meth:`arc`.

@@ -184,7 +184,11 @@ def _terms_from_operations(text: Operations, terms: Terms, width: int) -> list[i
 
 
 def _outputs(path: ExecutionPath, text: Operations, terms: Terms, width: int) -> list[int]:
-    """Return the terms that the output arrays contain at the end of a path, in the order of the outputs in ``text``."""
+    """Return the output values at the end of a path, in the order of the outputs in ``text``.
+
+    A value is the number of a symbolic term in the store ``terms``. NotUnderstood is raised if an output is not
+    written.
+    """
     outputs = []
     for place, _ in text.outputs:
         name, index = place.removesuffix("]").split("[")

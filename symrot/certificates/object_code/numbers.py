@@ -37,7 +37,10 @@ def _lanes(state: MachineState, words: Words, width: int) -> list[int]:
 
 # Scalar instructions keep the upper words of the first source.
 def _each(suffix: str, operation: Callable[..., int], arguments: int = 2) -> Numeric:
-    """Return the function that applies ``operation`` to each number of the last ``arguments`` sources."""
+    """Return the function for an instruction that applies ``operation`` to numbers, element by element.
+
+    The operands are the last ``arguments`` registers of the instruction's sources.
+    """
     width, is_packed = WIDTHS[suffix[1]], suffix[0] == "p"
 
     def numeric(state: MachineState, sources: list[Words], _: int) -> Words:
@@ -96,13 +99,15 @@ def _bitwise(operation: Callable[..., int]) -> Numeric:
 
 
 def _compare(suffix: str, outcomes: Outcomes | None) -> Numeric:
-    """Return the function that compares numbers; the bits of a result are all 1 for ``outcomes``, otherwise all 0."""
+    """Return the function for an instruction that compares numbers: all bits of a result are 1 for true, else 0.
+
+    The comparison is true for ``outcomes``, such as ``{"<", "="}``; if None, a constant in the instruction selects it.
+    """
     by_number = list(PREDICATES.values())
 
     def numeric(state: MachineState, sources: list[Words], constant: int) -> Words:
         if outcomes is None and not 0 <= constant < 32:
             raise NotUnderstood(f"expected a comparison predicate from 0 to 31 in the instruction, got {constant}")
-        # without ``outcomes`` a constant in the instruction selects the comparison
         chosen = by_number[constant % 16] if outcomes is None else outcomes
         return _each(suffix, lambda terms, a, b: terms.mask(WIDTHS[suffix[1]], chosen, a, b))(state, sources, 0)
 

@@ -61,7 +61,7 @@ class ArrayArgument:
 
 @dataclass(frozen=True)
 class CallContext:
-    """The facts about a call that do not change while the function runs."""
+    """What stays the same while a compiled function is executed symbolically: its code, its arguments, its stack."""
 
     terms: Terms
     listing: Listing

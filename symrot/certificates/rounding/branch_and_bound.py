@@ -51,7 +51,7 @@ class SearchResult:
 
 @dataclass
 class _Parts:
-    """The parts (sub-boxes) of a search, with their branches and error bounds."""
+    """The parts (sub-boxes) of a search, with the branch of each condition on each part, and error bounds."""
 
     boxes: Array  # (2, inputs, n)
     # branch of each condition: 1 if the relation holds, 0 if not, -1 if both are possible; shape (conditions, n)
@@ -59,7 +59,7 @@ class _Parts:
     bound: Array
     # the node that prevents a finite bound
     obstacle: NDArray[np.int64]
-    # a condition that holds only on a piece of the part
+    # a condition that holds at some points of the part and not at others
     undecided: NDArray[np.int64]
 
     def take(self, chosen: NDArray[np.intp] | NDArray[np.bool_]) -> "_Parts":
@@ -144,10 +144,12 @@ class _BoundSearch:
             self.pointwise, self.worst = float(reached[best]), tuple(float(x) for x in points[:, best])
 
     def halves(self, parts: _Parts) -> tuple[Array, NDArray[np.int8]]:
-        """Split each part into two or four boxes; return the boxes and the branches chosen for them."""
+        """Split each part into two or four boxes; return the boxes, and for each box the branch of each condition.
+
+        Branches are coded as in ``_Parts.decided``. A part with an undecided condition gives one box for each branch.
+        """
         choosing = parts.undecided >= 0
         boxes, decided = [], []
-        # a part with an undecided condition gives two boxes, one for each branch
         if choosing.any():
             chosen = parts.take(choosing)
             for branch in (0, 1):
@@ -275,8 +277,8 @@ def search(
 def _run_search(run: _BoundSearch, budget: int, target: float | None) -> SearchResult:
     """Return the result of a search that ends when the bound is tight, or after ``budget`` evaluations.
 
-    The search also ends if a part without a bound is almost as small as a point and, with a ``target``, when it is
-    known whether the bound exceeds the target.
+    Two more events end the search: a part is almost as small as a point and still has no bound; or it is known whether
+    the largest error exceeds ``target``, if that is not None.
     """
     graph, box = run.graph, run.box
     conditions = len(graph.conditions)
@@ -315,9 +317,10 @@ def _narrow(run: _BoundSearch, parts: _Parts) -> NDArray[np.bool_]:
 
 
 def _spread(run: _BoundSearch, parts: _Parts) -> Array:
-    """Return, for each part, the largest of its widths relative to the whole box, over the inputs that matter.
+    """Return, for each part, its largest width relative to the width of the whole box, over the inputs that matter.
 
-    These are the inputs that must be narrow for the part's obstacle, the operation that prevents a bound, to be finite.
+    The operation that prevents a bound on the part, such as a division, has a finite bound only where the inputs that
+    matter have narrow ranges.
     """
     width = np.where(run.width > 0, run.width, 1.0)
     relative = (parts.boxes[1] - parts.boxes[0]) / width[:, None]

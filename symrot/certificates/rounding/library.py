@@ -36,10 +36,10 @@ class RoundingProblem:
     box: Mapping[str, tuple[Fraction, Fraction]]
     # for example, that a quaternion has unit norm
     region: Region
-    symbols: Mapping[str, str]  # place -> component, such as "angles[1]" -> "theta"
+    symbols: Mapping[str, str]  # C name of an input component -> symbol, such as "angles[1]" -> "theta"
 
     def place(self, name: str) -> str:
-        """Return the input component, such as ``"q[1]"``, for a ``name`` that is this text or its symbol ``"q1"``."""
+        """Return the C name of an input component: ``"q[1]"`` for the ``name`` ``"q[1]"`` or the symbol ``"q1"``."""
         for place, symbol in self.symbols.items():
             if name in (place, symbol):
                 return place
@@ -47,7 +47,10 @@ class RoundingProblem:
 
 
 def library_problem(kernel: Definition, operations: Operations) -> RoundingProblem:
-    """Return the box of a library kernel's inputs and the restrictions of the inputs in it, such as unit norm."""
+    """Return the ranges of a library kernel's inputs, and restrictions such as the unit norm of a quaternion.
+
+    There are restrictions only if the kernel calls atan2.
+    """
     symbols = {place: component[0] for each in kernel.inputs for place, component in each.places.items()}
     box = {place: kernel.box[symbol] for place, symbol in symbols.items()}
     # a matrix is any nine numbers in [-1, 1], a quaternion any four

@@ -74,7 +74,10 @@ def narrowed(boxes: Array, region: Region, places: Sequence[str]) -> Array:
 
 
 def _left_by(others: Sequence[Array], count: int) -> tuple[Array, Array]:
-    """Return the least and the largest |x| on each box for which x^2 and the squares of ``others`` sum to 1."""
+    """Return, for each of ``count`` boxes, the least and the largest |x| if x^2 plus other squares is 1.
+
+    ``others`` holds the ranges of the other numbers, such as the other components of a unit quaternion.
+    """
     # the sum may differ from 1 by the tolerance UNIT_NORM
     rest = intervals.point(1.0, count) + np.array([[-UNIT_NORM], [UNIT_NORM]])
     for other in others:

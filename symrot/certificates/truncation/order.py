@@ -56,10 +56,10 @@ def _weight(tree: Tree, method: RungeKutta) -> list[Fraction]:
 
 
 def require_order(method: Method) -> tuple[Fraction, ...]:
-    """Raise CertificateError unless a method has its order; return the largest defects of its order conditions.
+    """Raise CertificateError if a method does not have the order ``method.order``; return defects of order conditions.
 
     Entry k is the largest defect of trees with k + 1 nodes, 0 unless the method's coefficients are rounded decimals.
-    For a Taylor method, which has its order by construction, all entries are 0; for an exact step there are no entries.
+    For a Taylor method, whose order needs no proof, all entries are 0; for an exact step there are no entries.
     Source: Hairer, Norsett, Wanner, Solving ODEs I, 2nd ed., theorem II.2.13.
     """
     method = method.plain if isinstance(method, WithDerivatives) else method

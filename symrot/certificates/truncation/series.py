@@ -71,9 +71,9 @@ class PowerSeries:
         return result if exponent >= 0 else 1 / result
 
     def integrated(self, start: Any, slope: "PowerSeries") -> "PowerSeries":
-        """Return the series f(x(h)), where this series is x(h), ``start`` is f(x(0)) and ``slope`` is f'(x(h)).
+        """Return the series of a function f of this series x(h): f(x(h)), computed from its derivative.
 
-        For the logarithm, ``slope`` is the series 1/x(h).
+        ``start`` is f(x(0)), and ``slope`` is the series f'(x(h)). For the logarithm f, this is the series 1/x(h).
         """
         rates = self.rates
         return PowerSeries((start, *(_dot(slope.terms[: n + 1], rates[n::-1]) / (n + 1) for n in range(len(rates)))))

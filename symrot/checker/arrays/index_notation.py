@@ -25,8 +25,8 @@ OF_PAULI = frozenset({"sigma", "i", "I"})
 """The letters of identities such as ``σ_j σ_k = δ_jk + i ε_jkl σ_l``: Pauli's matrices, i and the unit matrix."""
 
 MOST_ENTRIES, WIDTH = 81, 9
-"""MOST_ENTRIES is the largest number of terms of a written-out sum, and of components in which an equation is written
-out; WIDTH is the usual number of these components in a row of the matrix that either side becomes."""
+"""MOST_ENTRIES is the largest number of terms of a written-out sum, and of components of a written-out equation. If an
+equation has more than WIDTH components, each side usually becomes a matrix with WIDTH components in a row."""
 
 
 def written_out(relation: Relation) -> tuple[Relation, str]:
@@ -73,14 +73,15 @@ def written_out(relation: Relation) -> tuple[Relation, str]:
 
 
 def component_of_cross(pair: Sequence[Node], index: str, used: str) -> Node | None:
-    """Return ``epsilon_ijk a_j b_k``, the component i of a x b; ``pair`` is a and b, ``index`` is i. None unless both
-    are names.
+    """Return ``epsilon_ijk a_j b_k``, the component i of a x b; ``pair`` holds a and b, ``index`` is i.
+
+    The summed indices j and k are letters that do not occur in ``used``, a text of the indices in use. None if a or b
+    is no name, if ``index`` is no index, or if no letters are left.
     """
     left, right = pair
     free = [letter for letter in "pqrskjlmni" if letter not in used + index]
     if left.kind != "name" or right.kind != "name" or len(free) < 2 or not re.fullmatch("[i-np-s]", index):
         return None
-    # letters that do not occur in the text ``used``
     j, k = free[:2]
     return product([Node("name", f"epsilon_{index}{j}{k}"), *(
         Node("name", f"{str(vector.value).removesuffix(MARK)}_{n}") for vector, n in ((left, j), (right, k))

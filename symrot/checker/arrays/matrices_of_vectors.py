@@ -42,7 +42,7 @@ ROTATION = re.compile(r"[RCQA](_\w+)?")
 such as R."""
 
 OMEGA = ("omega", "w")
-"""Names of the angular velocity ω in ``Ω(ω)``."""
+"""Names of the angular velocity ω in ``Ω(ω)``, the matrix in ``q' = 1/2 Ω(ω) q``."""
 
 
 class WithMatrices(NamedTuple):
@@ -125,8 +125,9 @@ def _skew_letters(node: Node, hats: Collection[str], known: Collection[str]) -> 
 
 
 def _name_of(factor: Node) -> str:
-    """Return the name K if a factor is K, a power of K, or ``dot(K, K)``, which K^2 becomes if the text marks K as a
-    vector; otherwise return "".
+    """Return the name K for a factor ``K``, ``K^3`` or ``dot(K, K)``; return "" for a factor without such a name.
+
+    ``K^2`` has become ``dot(K, K)`` if the text marks K as a vector.
     """
     if factor.kind == "call" and factor.value == "dot" and factor.args[0] == factor.args[1]:
         factor = factor.args[0]

@@ -39,8 +39,8 @@ ANGULAR = re.compile(r"(omega|Omega|w)(_[A-Za-z]+)?")
 """Pattern of the names of angular velocities."""
 
 USUAL_NAMES = ("q", "Q", "beta", "epsilon")
-"""Names that mean a quaternion, even without a sign such as ⊗ or a star, in an equation such as ``q' = 1/2 omega q``;
-and in ``|q|`` if the text has q_bar."""
+"""Names that mean a quaternion even in a text without signs of quaternions, such as ⊗ or a star. This holds in an
+equation such as ``q' = 1/2 omega q``, and for ``|q|`` in a text that also contains q_bar."""
 
 ENDINGS = ("_vec", "_v", "v")
 """Endings of the name of a vector part: the vector part of the quaternion q is ``q_vec``, ``q_v`` or ``qv``."""
@@ -144,9 +144,10 @@ def _by_components(relation: tuple[str, Node, Node], known: Collection[str]) -> 
 
 
 def _components(node: Node) -> tuple[list[Node], ...] | None:
-    """Return [a], [s*x], [s*y], [] for ``a + s*(x*i + y*j)``: the terms without units, and the factors of i, j and k.
+    """Return the lists of terms of a formula's scalar part, and of its coefficients of the units i, j and k.
 
-    None if the formula is not linear in i, j and k.
+    For ``a + s*(x*i + y*j)`` these four lists are [a], [s*x], [s*y] and []. None if the formula is not linear in i, j
+    and k.
     """
     if not names_in(node) & {*UNITS}:
         return [node], [], [], []

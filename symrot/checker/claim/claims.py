@@ -90,7 +90,7 @@ class Claim:
     context : Context
         Statements in words about the names of the claim and about the body, such as ``"rod"``.
     written : tuple of (Node, Node)
-        Formulas in ``relation``, each with the short form that the text has for it, such as an exponential.
+        Pairs (formula in ``relation``, its short form in the text): a rotation matrix and ``e^(theta K)``.
     unsplit : (str, Relation) or None
         The imaginary unit of a complex equation, and the equation before its split into real and imaginary parts.
     """
@@ -175,10 +175,12 @@ class Claim:
         return f"{self.id}: {key}" if self.id else ""
 
     def with_relation(self, relation: Relation, **changes: Any) -> "Claim":
-        """Return the claim with another equation, and with ``changes`` of other fields except the definitions."""
+        """Return the claim with the equation ``relation`` instead of its own, and with ``changes`` of other fields.
+
+        The field ``define`` must not be changed: the computed values of the definitions are reused.
+        """
         other = replace(self, relation=relation, **changes)
         if "definitions" in self.__dict__:
-            # computed values of definitions are reused
             other.__dict__["definitions"] = self.definitions
         return other
 

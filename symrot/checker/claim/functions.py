@@ -41,9 +41,10 @@ function."""
 
 
 def _of_scalar(function: Callable[[Expr], Expr], below: Callable[[Expr], Expr] | None = None) -> Any:
-    """Return the function that evaluates a call such as ``tan(x)``: from the scope and the tree to SymPy's tan(x).
+    """Return a function (scope, tree) -> SymPy expression, which evaluates trees of calls such as ``tan(x)``.
 
-    ``below`` returns the denominator of the value, cos(x) for tan(x), which is recorded as a divisor that may be zero.
+    The scope has the values of names. ``below`` returns the denominator of the value, cos(x) for tan(x), which is
+    recorded as a divisor that may be zero.
     """
 
     def call(scope: Scope, node: Node) -> Expr:

@@ -252,9 +252,9 @@ def _says_something(claim: Claim, left: Node, right: Node) -> bool:
 
 
 def _solved_for_vector(claim: Claim, left: Node, right: Node) -> NamedFormula | None:
-    """Return the NamedFormula for a vector of an equation: v and ``u + w x r`` for ``v - u = w x r``.
+    """Solve an equation for one of its vectors: ``v - u = w x r`` gives v and the formula ``u + w x r``.
 
-    Return None if no vector without a definition is a whole term and occurs once.
+    The vector has no definition, is a whole term, and occurs once in the equation. Return None if there is none.
     """
     terms = [*terms_of(left), *map(negated, terms_of(right))]
     generic = {name for name, tree in claim.define if is_components(name, tree)}
@@ -282,7 +282,11 @@ def _is_constraint(left: Node, right: Node, letters: Sequence[set[tuple[str, boo
 
 
 def _letters_by_definition(claim: Claim, left: Node, right: Node) -> list[set[tuple[str, bool]]]:
-    """Return the quantities of each side with definitions put in: {m, a} and {k, x} for ``F == k*x`` if ``F = m*a``."""
+    """Return the sets of quantities of both sides after definitions are inserted.
+
+    For ``F == k*x`` with the definition ``F = m*a``, these are m and a, and k and x. A quantity is a pair (name,
+    whether its rate is meant). Both sets are empty if the left side is no defined name.
+    """
     defined = {name: tree for name, tree in claim.define if not is_components(name, tree)}
     if left.value not in defined:
         return [set(), set()]

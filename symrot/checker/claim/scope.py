@@ -95,10 +95,11 @@ class Scope(ABC):
         return value
 
     def argument(self, node: Node, role: str) -> Expr:
-        """Return the scalar ``node``, an argument of a function; raise InputError for another value or too deep
-        nesting.
+        """Return the value of ``node``, an argument of a function; raise InputError if it is no scalar, or nested too
+        deeply.
+
+        ``role`` is for the message, such as "as the argument of sin".
         """
-        # ``role`` is for the message, such as "as the argument of sin"
         value = self.scalar(node, role)
         self.within_nesting(value, node)
         return value

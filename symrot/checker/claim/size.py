@@ -18,8 +18,8 @@ __all__ = [
 ]
 
 MOST_PIECES = 200_000
-"""The largest number of symbols, numbers and operations in the value of a formula, the SymPy expression that is built
-from it; parts that occur twice are counted twice."""
+"""The largest number of symbols, numbers and operations in the SymPy expression that is built from a formula; parts
+that occur twice are counted twice."""
 
 MOST_DIFFERENTIATED = 3_000
 """The largest number of symbols, numbers and operations in a formula that is differentiated."""
@@ -34,8 +34,8 @@ LARGE_MATRIX = 1_000
 """Number of symbols, numbers and operations in a matrix: above it, the determinant is expanded by cofactors."""
 
 MOST_ANGLE_TERMS = 2_000
-"""The largest number of terms of a sine that is expanded into sines and cosines of single angles; the sine of a sum of
-eleven angles has 1024 terms."""
+"""The largest number of terms into which a sine of a sum may be expanded; the sine of a sum of eleven angles expands
+into 1024 products of sines and cosines of single angles."""
 
 MOST_NESTED = 16
 """The largest number of functions and fractional powers inside one another; SymPy needs seconds for 16, and minutes for

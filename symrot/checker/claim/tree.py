@@ -80,7 +80,10 @@ def is_derivative(node: Node) -> bool:
 
 
 def derivative(args: Sequence[Node], span: tuple[int, int] = (0, 0)) -> Node:
-    """Return ``diff(x, t, t)``, the derivative that SymPy's ``diff`` has for the arguments x, t, 2, or x, (t, 2)."""
+    """Return the tree of a derivative from arguments as SymPy's ``diff`` takes them, with counts written out.
+
+    Both ``x, t, 2`` and ``x, (t, 2)`` give ``diff(x, t, t)``. ``span`` is the place of the derivative in its text.
+    """
     inner, *others = args
     variables: list[Node] = []
     for other in others:

@@ -39,12 +39,12 @@ __all__ = [
 
 MARK = "\N{RIGHTWARDS ARROW}"
 BASES = (("i", "j", "k"), *(tuple(f"e{mark}{axis}" for axis in axes) for mark in ("_", "") for axes in ("123", "xyz")))
-"""Groups of names of basis vectors. The names of a group mean the x, y and z axes if at least two of them are vectors
-of a text (in bold type, with an arrow or a hat) and none of them is differentiated by time; in groups other than i, j
-and k, only if the text has no vector outside of the group."""
+"""Groups of names of basis vectors, such as (i, j, k). The names of a group mean the x, y and z axes if a text marks at
+least two of them as vectors (in bold type, with an arrow or a hat) and differentiates none by time. For groups other
+than i, j and k, the text must also have no vectors except those of the group."""
 
 AXES = ("xyz", "123", "1234", "0123")
-"""Endings of the names of a vector's components, "xyz" for a_x, a_y and a_z; the four digits are for quaternions."""
+"""Endings of the names of components: "xyz" for a_x, a_y and a_z; "1234" and "0123" are for quaternions."""
 
 TENSOR = re.compile(r"[IJ](_[A-Za-z]\w*)?", re.ASCII)
 """Pattern of the names of inertia tensors."""
@@ -94,7 +94,7 @@ class Vector:
 
     @property
     def length_is_one(self) -> tuple[str, Node, Node]:
-        """The hypothesis that the length of this unit vector is one."""
+        """The hypothesis that this vector a has length one: ("==", ``dot(a, a)``, 1)."""
         own = Node("name", self.name)
         return "==", Node("call", "dot", (own, own)), number(1)
 
@@ -105,7 +105,10 @@ def is_tensor(name: str) -> bool:
 
 
 def is_components(name: str, tree: Node) -> bool:
-    """Return whether ``tree`` only names the components of the vector or matrix a: ``Matrix([a_x, a_y, a_z])``."""
+    """Return whether ``tree`` defines a vector or matrix ``name`` by names of components alone.
+
+    For the name a, this is true for ``Matrix([a_x, a_y, a_z])``.
+    """
     if any(tree == Vector(name, timed, axes=axes).components for timed in (False, True) for axes in AXES):
         return True
     base = name.partition("_")[0]
@@ -162,8 +165,9 @@ def used_vectors(sides: Sequence[Node], names: Mapping[str, bool]) -> tuple[Vect
 
 
 def _axes(name: str, used: Collection[str]) -> str:
-    """Return the endings of the names of a vector's components: "123" if ``used`` has ``a_1``, four digits for a
-    quaternion, otherwise usually "xyz".
+    """Return the endings of the names of a vector's components: "123" if the names ``used`` contain ``a_1``.
+
+    They are "0123" or "1234" for a quaternion, and otherwise usually "xyz".
     """
     numbers = [n for n in "01234" if f"{name}_{n}" in used or (n in "04" and f"{name}{n}" in used)]
     if {"0", "4"} & {*numbers} and {"1", "2", "3"} & {*numbers}:

@@ -36,14 +36,17 @@ _STOP = frozenset({
     "formula", "theorem", "principal", "components", "component", "unit", "dq/dt", "omega", "b", "e", "b^-1", "=",
     "i", "squared", "acos", "asin", "atan2", "2", "without", "minus", "sign", "physical",
 })  # fmt: skip
-"""Words in the names of derived formulas that a context need not state, since they do not tell formulas for one
-quantity apart."""
+"""Words in the names of derived formulas that do not tell formulas for one quantity apart.
+
+The context of a claim (words about its names and its body) need not contain them for a formula to fit the claim."""
 
 
 COMPONENTS = {
     "first": "x1Ap", "second": "y2Bq", "third": "z3Cr", "scalar": "04sw", "x": "x1Ap", "y": "y2Bq", "z": "z3Cr",
 }  # fmt: skip
-"""Maps a word for a component or an axis to the possible last letters of a name for it: p, q and r are the rates of an
+"""Maps a word for a component or an axis, such as "second", to the last letters of names of this component.
+
+The second component may be omega_y, omega_2, the moment of inertia B, or q, since p, q and r are the rates of an
 aircraft."""
 
 INDICES = frozenset("xyz0123")
@@ -57,7 +60,7 @@ def frame_of(name: str) -> str:
 
 
 OF_BODY_AXES = ("principal axes", "in the body", "Euler's equations", "rotation of a symmetric body")
-"""Phrases in the names of derived formulas; a formula with one of them is for components along axes of the body."""
+"""Phrases in the names of derived formulas: a formula whose name has one is for components along axes of the body."""
 
 
 def _axes_of(name: str) -> str:
@@ -154,7 +157,10 @@ def _has_axes(name: str, axes: str) -> bool:
 
 
 def _is_along(name: str, line: str) -> bool:
-    """Return whether the axis in a formula's ``name`` is along the body's ``line``, such as "about a diameter"."""
+    """Return whether a formula for a moment of inertia is for an axis along ``line``, such as "about a diameter".
+
+    ``name`` is the formula's name, such as "moment of inertia of a disk, x axis".
+    """
     _, bodies = LINES[line]
     axis = re.search(r", ([xyz]) axis", name)
     return any(
@@ -165,10 +171,10 @@ def _is_along(name: str, line: str) -> bool:
 
 
 def _where_else(place: str, line: str, name: str) -> str:
-    """Return words for the axis in a formula's ``name``, which is not along ``line``, such as "about a diameter".
+    """Return words for the axis of a formula called ``name``, which is not along ``line``, such as "about a diameter".
 
-    These are its ``place``, such as "about an end", or "about another axis" if ``line`` goes through the same point, or
-    if ``place`` is empty.
+    The words are ``place``, where the formula's name has its axis, such as "about an end". They are "about another
+    axis" if ``place`` is empty, or is where ``line`` is in the body of the formula.
     """
     _, bodies = LINES[line]
     places = [own for body, (own, _) in bodies.items() if body in bodies_of_formula(name)]
@@ -322,7 +328,7 @@ def is_place(words: str) -> bool:
 
 @lru_cache(maxsize=20_000)
 def _tokens(text: str) -> tuple[str, ...]:
-    """Return the words of a text in one spelling, without words such as "of"."""
+    """Return the words of a text without words such as "of"; words with several spellings have a uniform one."""
     return tuple(
         word
         for word in re.findall(r"[\w'/^-]+", plain_words(text).replace("-frame", " frame"))

@@ -39,7 +39,9 @@ class Kind:
 
     @cached_property
     def phrases(self) -> tuple[str, ...]:
-        """All names of this kind of body, the title and the synonyms, in lower case and in one spelling."""
+        """All names of this kind of body, the title and the synonyms, spelled as ``plain_words`` spells them: disk for
+        Disc.
+        """
         return tuple(map(plain_words, (self.title, *self.synonyms)))
 
 
@@ -209,7 +211,7 @@ _SIDES: dict[str, tuple[tuple[str, Fraction], ...]] = {
     "ellipsoid": ((r"(?:half|semi)-?\s?ax[ei]s", Fraction(1)), (r"diameters|full axes", Fraction(1, 2))),
     "other": ((r"(?:half|semi)[- ]?(?:sides?|edges?|ax[ei]s)", Fraction(2)), ("sides?|edges?", Fraction(1))),
 }  # fmt: skip
-"""Maps the form of a body to pairs (noun for its dimensions, factor), as in "semi-axes a, b, c": the author's letter
+"""Maps the shape of a body to pairs (noun for its dimensions, factor), as in "semi-axes a, b, c": the author's letter
 times the factor is symrot's dimension."""
 
 _HARMLESS = re.compile(
@@ -233,8 +235,8 @@ _DIRECTIONS: tuple[tuple[tuple[str, ...], str, str], ...] = (
     ((*_FLAT, *_ROUND), rf"(?:perpendicular|normal) to (?:plane of )?{_FACES}", "z"),
     ((*_FLAT, *_ROUND), rf"(?:parallel to|lying in|in) (?:plane of )?{_FACES}", "xy"),
 )
-"""Triples of kinds or forms of bodies, a pattern of words for the direction of an axis through such a body, and the
-axes with this direction: "z" for "perpendicular to its plane"."""
+"""Triples (titles or shapes of bodies, pattern, axes): the pattern matches words for the direction of an axis through
+such a body, the axes are those with this direction, "z" for "perpendicular to its plane"."""
 
 _PLANE = re.compile(
     r",? ?\b(?:that )?(?:lying |lies |placed |is )?in (?:plane (?:of )?)?"
@@ -316,9 +318,7 @@ def _without_plane(kind: Kind, words: str) -> tuple[str, str]:
 
 
 def _direction(kind: Kind, words: str) -> tuple[str, str]:
-    """Return (axes, other words) for words about a body: "xy" if the axis is "parallel to its base", "" if none is
-    stated.
-    """
+    """Return (axes, other words) for words about a body: axes "xy" for "parallel to its base", "" for no direction."""
     for kinds, pattern, axes in _DIRECTIONS:
         if kind.title in kinds or kind.shape in kinds:
             rest = re.sub(rf"{_LINE}{pattern}", " ", words, count=1)

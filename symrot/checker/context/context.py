@@ -19,7 +19,7 @@ __all__ = ["NO_CONTEXT", "Context", "Meaning", "letters_of", "matrix_of", "name_
 _OF_AXES = re.compile(
     r"\b(about|through|perpendicular|normal|parallel|vertical|horizontal|edge|tangent|diameter|plane|inclined)\b"
 )
-"""Words that say where an axis is."""
+"""Pattern of the words that say where an axis is, such as "about" and "diameter"."""
 
 
 def matrix_of(name: str) -> str:
@@ -94,7 +94,10 @@ class Context:
 
     @property
     def place(self) -> str:
-        """The place of the axis in the words about the body, such as "about an end"; otherwise an empty text."""
+        """Where the axis is, as the context's words about the body state: "about an end" for "rod about one end".
+
+        Empty if these words state no place.
+        """
         return self.body.place if self.body else ""
 
     @property

@@ -66,8 +66,9 @@ def in_context(claim: Claim, named: NamedFormula, verdict: Verdict) -> Verdict:
 def _with_all_words(claim: Claim, named: NamedFormula, verdict: Verdict) -> Verdict:
     """Return the verdict on a claim in its context; words of the context that the check cannot use weaken it.
 
-    ``verdict`` is the verdict without the context. If a word is unused, "true" becomes "recognised", and "false"
-    becomes ``verdict``. If a word about the body is not understood, the verdict is "definition".
+    ``verdict`` is the verdict without the context. If the context has an unused word, return "recognised" where the
+    context proves the claim, and ``verdict`` where it disproves the claim. If a word about the body is not understood,
+    or the place of the pivot is open, return "definition".
     """
     # words about the body or its axis that symrot does not understand leave open what the claim means
     if obscure := claim.context.obscure:
@@ -94,8 +95,8 @@ def _with_all_words(claim: Claim, named: NamedFormula, verdict: Verdict) -> Verd
 
 
 MOST_EDITS = 40
-"""The largest number of edits that are tried as repairs of a formula that symrot knows as the formula of another
-quantity, body or point than the context states."""
+"""The largest number of edits of a claim's formula that are tried if symrot derives this formula, but for another
+quantity, body or point than the context states: an edit may give the formula that the context means."""
 
 
 ENGLISH = ("from", "to", "that", "at", "between", "on", "of")

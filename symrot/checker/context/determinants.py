@@ -83,8 +83,8 @@ def verdict_on_determinant(claim: Claim, repair: bool) -> Verdict | None:
 def _is_determinant(tree: Node, generic: set[str]) -> bool:
     """Return whether a tree is ``det(T)`` for a matrix T that may be a rate Jacobian.
 
-    T must be in ``generic``, the matrices that the claim does not define, and must not be a usual name such as R of
-    another matrix.
+    T must be in ``generic``, the matrices that the claim does not define, and must not have a name such as R, which
+    usually means a rotation matrix.
     """
     return tree.kind == "call" and tree.value == "det" and tree.args[0].kind == "name" and (
         str(tree.args[0].value) in generic and not OTHER_MATRICES.fullmatch(str(tree.args[0].value))
@@ -92,9 +92,10 @@ def _is_determinant(tree: Node, generic: set[str]) -> bool:
 
 
 def _readings(claim: Claim, formula: Node, letter: str) -> tuple[Identification, ...]:
-    """Return the rate Jacobians whose determinant is ``formula`` or its negative, those of usual sequences first.
+    """Identify ``formula`` with determinants of rate Jacobians, or their negatives, those of usual sequences first.
 
-    ``letter`` is the claim's letter for the second angle.
+    ``letter`` is the claim's letter for the second angle. The result has at most MOST_SEQUENCES entries; it is empty if
+    ``formula`` has no value or is a matrix.
     """
     try:
         value = claim.interpreter().read(formula)

@@ -1,4 +1,4 @@
-"""Formulas in which two letters are exchanged: the context of a claim says what each of them means."""
+"""Claims that are right after two letters are exchanged, where the context of the claim says what both letters mean."""
 
 from collections.abc import Callable
 from dataclasses import replace
@@ -46,6 +46,6 @@ def by_exchanged_letters(
 
 
 def _unit(claim: Claim, name: str) -> str:
-    """Return the unit of the quantity that the context's words give to ``name``; empty without such words."""
+    """Return the unit of the quantity that the context assigns to ``name``: "N m" for "M = torque"; "" if none."""
     meaning = claim.context.meaning_of(name)
     return meaning.quantity.unit if meaning is not None else ""

@@ -33,13 +33,14 @@ MOST_ASSIGNMENTS = 24
 with the formula for each assignment."""
 
 MOST_CHOICES = 10_000
-"""The largest number of assignments of a claim's letters to the symbols of one known formula that are tested; most
-contradict the context or the indices, as I_x for the moment about y."""
+"""The largest number of assignments of a claim's letters to the symbols of one known formula that are tested. Most
+assignments fail: they contradict the context, or an index, as I_x does for the moment of inertia about y."""
 
 ANGLES = tuple(Symbol(symbol.name, real=True) for symbol in (*symbols.angles, *symbols.angle_rates))
 
 SIDES = "a|b|c"
-"""The sides of a box, or the semi-axes of an ellipsoid, along x, y and z if nothing else is stated."""
+"""Pattern of the letters in derived formulas for the sides of a box, or the semi-axes of an ellipsoid: a along x, b
+along y, c along z."""
 
 ANGLE = "phi|theta|psi|alpha|beta|gamma|varphi|vartheta|theta_?[1-3]|q_?[1-3]"
 
@@ -134,9 +135,10 @@ def _root(square: Expr) -> Expr:
 
 
 def _unused_rates(mapping: Mapping[Expr, Expr], own: set[Expr]) -> dict[Expr, Expr]:
-    """Return ``{dphi: diff(phi(t), t)}`` for the angle rates that ``mapping`` does not replace.
+    """Return the angle rates that ``mapping`` does not replace, with the derivatives to put in their place.
 
-    Empty if the claim has no derivatives.
+    ``mapping`` maps symbols of a known formula to letters of the claim, ``own`` are the symbols and derivatives of the
+    claim. Example: ``{dphi: diff(phi(t), t)}``; {} if the claim has no derivatives.
     """
     if not any(atom.is_Derivative for atom in own):
         return {}
@@ -167,10 +169,11 @@ def with_letters(context: Context, target: Any) -> Any:
 def assignments_of(
     context: Context, target: Any, own: set[Expr], quantity: str, known: Known, is_specific: bool
 ) -> Iterator[dict[Expr, Expr]]:
-    """Yield the assignments {R: r} of a claim's letters ``own`` to symbols of the known formula ``target`` that agree
-    with the usage of books and with the context.
+    """Yield maps {R: r} from symbols of the known formula ``target`` to the letters ``own`` of a claim.
 
-    ``is_specific`` says that the formula is for one body or one sequence, and may have symbols that the claim lacks.
+    A map is yielded if books use such letters for these symbols, as r for a radius R, and if it contradicts neither the
+    context nor ``quantity``, the name for which the claim gives a formula. ``is_specific`` says that the formula is for
+    one body or one sequence, and may have symbols that the claim lacks.
     """
     own_symbols = sorted(target.free_symbols - {time}, key=str)
     if context.sequence and context.sequence in known.name:  # a formula may lack an angle that the claim has

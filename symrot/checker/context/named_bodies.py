@@ -70,12 +70,11 @@ def _body_of(verdict: Verdict) -> str:
 
 
 def _judged(claim: Claim, named: NamedFormula, verdict: Verdict, stated: Context, judge: Judge) -> Verdict:
-    """Return "recognised" or "doubtful" if a claim is right, or has a repair, for the body and point that a name
-    states.
+    """Return the verdict on a claim about a quantity such as ``I_rod``, whose name states the body or point.
 
-    ``stated`` is the context that the name of the claim's quantity states; ``judge`` returns the verdict on the claim
-    in this context. Otherwise return ``verdict``, as "definition" if it recognised the formula of another body or
-    point.
+    ``stated`` is the context that this name states, and ``judge`` returns the verdict on a claim in a context. Return
+    "recognised" if the claim is right in this context, "doubtful" if a repair is. Otherwise return the given
+    ``verdict``, or "definition" in its place if the given verdict names the formula of another body or point.
     """
     other = judge(replace(claim, context=stated), named)
     if other.verdict in ("true", "recognised"):

@@ -1,4 +1,7 @@
-"""What a true claim leaves to a guess, such as which letter belongs to which axis: it is then only "recognised"."""
+"""Verdicts on claims that are true if a guess is right, such as which letter belongs to which axis.
+
+The verdict on such a claim is not "true" but "recognised" (equal to a derived formula), with a note on the guess.
+"""
 
 import re
 from collections.abc import Sequence
@@ -17,7 +20,7 @@ TANGENT = "about a tangent"
 
 
 def with_order(context: Context, verdict: Verdict, letters: Sequence[str]) -> Verdict:
-    """Return the verdict, with "recognised" for "true" if the claim uses phi and psi in an unusual order."""
+    """Return the verdict, but "recognised" in place of "true" if the claim uses phi and psi in an unusual order."""
     angles = [letter for letter in letters if letter in ("phi", "psi", "dphi", "dpsi")]
     # an order that words state is not unusual
     if not context.sequence or not angles or any(context.meaning_of(letter.removeprefix("d")) for letter in angles):
@@ -38,7 +41,7 @@ def with_order(context: Context, verdict: Verdict, letters: Sequence[str]) -> Ve
 
 
 def with_sides(verdict: Verdict) -> Verdict:
-    """Return the verdict, with "recognised" for "true" if it was guessed which side a, b or c is along which axis."""
+    """Return the verdict, but "recognised" in place of "true" if the axes of the sides a, b, c were guessed."""
     readings = [known for known in verdict.recognised_as if not any(re.fullmatch(SIDES, old) for old in known.mapping)]
     # known formulas call the sides, or semi-axes, along x, y and z a, b and c: without renaming, nothing is guessed
     if readings:
@@ -48,7 +51,7 @@ def with_sides(verdict: Verdict) -> Verdict:
 
 
 def with_tangent(context: Context, verdict: Verdict) -> Verdict:
-    """Return the verdict, with "recognised" for "true" if "about a tangent" is read as a line normal to a disk's plane.
+    """Return the verdict, but "recognised" in place of "true" if "about a tangent" was read as a line normal to a disk.
 
     Most authors mean a tangent in the plane of the disk or ring.
     """
@@ -61,7 +64,7 @@ def with_tangent(context: Context, verdict: Verdict) -> Verdict:
 
 
 def with_axes(context: Context, verdict: Verdict) -> Verdict:
-    """Return the verdict, with "recognised" for "true" if the axis of a letter such as I_1 was guessed."""
+    """Return the verdict, but "recognised" in place of "true" if the axis of a letter such as I_1 was guessed."""
     stated = set(context.body.letters.values()) if context.body else set()
     readings = [
         known
@@ -82,7 +85,11 @@ def _is_exchanged(known: Identification) -> bool:
 
 
 def with_guesses(context: Context, verdict: Verdict, stated: str) -> Verdict:
-    """Return the verdict with its likeliest formula first, and with a note such as "guessed, not stated: solid"."""
+    """Return a verdict with the recognised formula that needs the fewest guesses first, and with a note on its guesses.
+
+    The note is for instance "guessed, not stated: solid". A guess is a word in the formula's name that neither the
+    context nor ``stated``, the words implied by the name of the claim's quantity, state.
+    """
     readings = sorted(verdict.recognised_as, key=lambda known: len(guesses(context, known.name, stated)))
     verdict, likeliest = replace(verdict, recognised_as=tuple(readings)), readings[0]
     # a guess is a word in the formula's name that neither the context nor the claim's quantity states

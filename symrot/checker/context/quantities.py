@@ -43,7 +43,7 @@ class Quantity:
 
     @cached_property
     def phrases(self) -> tuple[str, ...]:
-        """The title and the synonyms in lower case and in one spelling."""
+        """The title and the synonyms, spelled as ``plain_words`` spells them: centre for Center, about for around."""
         return tuple(map(plain_words, (self.title, *self.synonyms)))
 
 
@@ -193,8 +193,8 @@ PLACES: tuple[tuple[str, tuple[str, ...], tuple[str, ...]], ...] = (
     ("about the fixed point", ("pivot", "fixed point", "point o", "o", "pivot o"), ()),
     ("about the fixed axis", ("fixed axis", "one axis"), ("about one axis",)),
 )  # fmt: skip
-"""Triples for points through which axes go: the title, words for the point after "about", and words for it in the names
-of formulas."""
+"""Triples for points of a body through which axes go: (title of the point, such as "about an end"; words that users
+write for it after "about"; words for it in the names of derived formulas)."""
 
 ROUND = (
     "a cylinder", "a hollow cylinder", "a thin tube", "a annulus", "a cone", "a frustum", "a disk", "a ring", "a torus",
@@ -235,9 +235,10 @@ LINES: dict[str, tuple[tuple[str, ...], dict[str, tuple[str, str]]]] = {
         ("base", "base line", "base edge"), {"a plate": (CORNER, "xy"), "a triangular plate": (CORNER, "x")}
     ),
 }  # fmt: skip
-"""Maps the title of a line that serves as an axis to a pair: words for the line after "about", and a dictionary of the
-bodies that have such a line. In it, the value of "a disk" is a pair: the point of the disk that the names of formulas
-state, and the letters of the coordinate axes that lie along the line there, such as "xy"."""
+"""Maps the title of a line that serves as an axis, such as "about a diameter", to a pair: words that users write for
+the line after "about", and a dictionary of the bodies with such a line. This dictionary maps a body, such as "a disk",
+to (point, axes) in the names of derived formulas: the title of a point of the line, and the letters of the axes through
+this point that can be the line, "xy" for a diameter."""
 
 UNUSED = frozenset({
     "a", "an", "the", "of", "its", "their", "any", "some", "this", "that", "is", "are", "and", "in", "by",
@@ -302,8 +303,9 @@ def place_of_words(words: str, formulas: Collection[str] = ()) -> tuple[str, str
 
 
 _BEFORE_PLACE = r"(through|about|hung at|hung from|at)(?: (?:any|some|one|either)(?: of)?(?! axis))?"
-"""Pattern of the words before the place of an axis, such as "about one of". The word "one" before "axis" belongs to the
-place: "about one axis" means the fixed axis of a body, "about axis" its axis of symmetry."""
+"""Pattern of the words before the point or line that says where an axis is, such as "about one of" before "its ends".
+The pattern leaves out the word "one" of "about one axis", which means the fixed axis of a body; "about axis" means its
+axis of symmetry."""
 
 _END_OF_PLACE = r"(?![\w-])(?! (?:of|in|through|perpendicular|normal|parallel|along|at|inclined|tilted)\b)"
 

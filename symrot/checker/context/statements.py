@@ -156,13 +156,16 @@ def _frame_in(words: str) -> tuple[str, str]:
 
 
 _NO_AXIS_OF = ("", r"(?! (?:in|through|perpendicular|normal|parallel|at)\b)")
-"""Two patterns for what follows a phrase that names a quantity: an empty one, and for a phrase that ends with "axis"
-one that excludes words such as "in": "axis in the plane" does not name the axis of a body."""
+"""Two patterns of what may follow a phrase for a quantity. The first, for most phrases, allows all words. The second,
+for a phrase that ends with "axis", excludes words such as "in": "axis in the plane" is not the axis of a body."""
 
 
 def _quantity(plain: str, words: str, prefix: str) -> tuple[Quantity, str]:
-    """Return the quantity that words state, such as the torque, and the phrase that states it."""
-    # ``plain`` are the words in the usual spelling, ``words`` and ``prefix`` are for messages
+    """Return the quantity that words state, such as the torque, and the phrase in the words that states it.
+
+    The phrase is searched in ``plain``, the words as ``plain_words`` spells them. Raise InputError if no quantity comes
+    first in them; the message begins with ``prefix`` and quotes ``words`` as the user typed them.
+    """
     phrases = [
         (match.start(), -len(phrase), phrase, quantity)
         for quantity in QUANTITIES
@@ -192,7 +195,10 @@ def _hint(words: str, phrases: dict[str, str]) -> str:
 
 
 def _body(words: str, prefix: str) -> Body:
-    """Return the body that words describe, with the letters of its dimensions spelled as in the trees of formulas."""
+    """Return the body that words describe, with the letters of its dimensions as in a claim's tree: r_prime for r'.
+
+    Raise InputError, with a message that begins with ``prefix``, if symrot knows no such body.
+    """
     body = body_of_words(words)
     if body is None:
         phrases = {phrase: phrase for kind in BODIES for phrase in kind.phrases}

@@ -1,7 +1,8 @@
 """The real points at which a claim is to hold, as polynomial constraints on the generators (unknowns) of its ring.
 
 Hypotheses, ``sin^2 + cos^2 - 1`` of angles, and ``root^n - base`` of roots are zero; divisors are not. A ``free``
-generator may have every value that these constraints allow. Constraints on others, such as tanh(x), are not used.
+generator may have every value that these constraints allow. A constraint with a generator that is not free, such as
+tanh(x), is not used.
 """
 
 from dataclasses import dataclass

@@ -69,7 +69,7 @@ def decide_equation(equation: Equation) -> Decision:
 
 
 def _with_letters_for_sums(equation: Equation, decision: Decision) -> Decision:
-    """Return "true" if an equation is proven after long sums inside functions were replaced by letters.
+    """Return the decision "true" if an equation is proven with letters in place of long sums inside functions.
 
     For instance, ``sin(a + b + c + d + e)`` becomes ``sin(s)``. Return ``decision`` if there is no such proof, if the
     proof needs conditions, and for an equation with further conditions, such as hypotheses or divisors in its text.
@@ -95,8 +95,9 @@ def _with_letters_for_sums(equation: Equation, decision: Decision) -> Decision:
 
 
 def _with_positive_symbols(equation: Equation, decision: Decision) -> Decision:
-    """Return "true" if an equation is proven for symbols with the signs that its conditions require; otherwise
-    ``decision``.
+    """Return a decision with the verdict "true" if the signs that ``decision.conditions`` require allow a proof.
+
+    For instance, the condition x > 0 lets abs(x) be x. Otherwise return ``decision`` unchanged.
     """
     known = positive_symbols(decision.conditions)
     if not known or equation.hypotheses:

@@ -133,8 +133,8 @@ class Hypotheses:
                 )
 
     def refuse_if_nowhere(self) -> None:
-        """Raise InputError if ranges show that a side is real nowhere, as ``sqrt(-1 - x**2)``, or that a
-        hypothesis holds nowhere.
+        """Raise InputError if the ranges of formulas show that a side of the claim is real nowhere, such as
+        ``sqrt(-1 - x**2)``, or that a hypothesis holds nowhere.
         """
         for need in self.needs:
             if fails_everywhere(need):
@@ -156,7 +156,8 @@ class Hypotheses:
         Raises
         ------
         InputError
-            If the condition is proven to be false, and sides or hypotheses then have no real value (``is_of_sides``).
+            If the condition is proven to be false, and ``is_of_sides`` says that the claim's sides or hypotheses are
+            real numbers only under this condition.
         """
         interval = enclosure(need.formula)
         if interval is None:
@@ -201,7 +202,9 @@ class Hypotheses:
         return infeasibility_proof(self.constraints) if self.present or self.ring.roots else None
 
     def refuse_if_empty(self) -> None:
-        """Raise InputError if there is provably no real point where the hypotheses hold and the sides are defined."""
+        """Raise InputError if provably no real point exists where the hypotheses hold and both sides of the claim have
+        a value.
+        """
         infeasibility = self._infeasibility
         if infeasibility is None:
             return

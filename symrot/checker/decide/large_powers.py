@@ -30,8 +30,8 @@ LARGEST_EXPANDED = 64
 """A power is replaced by a letter if its exponent times the degree of its base is larger than this."""
 
 HIGHEST_OF_BASE = 4
-"""The largest n for which symrot tests whether the base of one power is the n-th power of the base of another, as
-``1 - cos(x)**2`` is the second power of sin(x)."""
+"""The largest n for which bases of large powers are compared: does one base equal another base to the power n, up to
+the sign? For instance, ``1 - cos(x)**2`` equals sin(x) to the power 2."""
 
 MOST_POINTS = 500
 MOST_BASES = 12
@@ -42,8 +42,8 @@ LONGEST_WHOLE_NUMBER = 40
 """The largest number of digits of a whole number that is written exactly."""
 
 DIGITS_WRITTEN = (10, 20, 30, 40, 50)
-"""Numbers of digits to which the values of both sides at a counterexample are written: the first number is used with
-which the two texts differ."""
+"""Numbers of digits for writing the values of both sides at a counterexample, tried in turn until the two values differ
+as texts."""
 
 
 # -- the degree of formulas -------------------------------------------------------------------------------------------
@@ -63,8 +63,7 @@ def _size(formula: Expr) -> int:
 
 
 def _base_multiples(formulas: Sequence[Expr]) -> Mapping[Expr, Fraction]:
-    """Return, for each quantity in arguments of functions, the largest number of which all its coefficients are
-    multiples.
+    """Return {x: b}, where b is the greatest common divisor of the coefficients of x in the arguments of functions.
 
     The formulas sin(x/2) and sin(3*x) give {x: 1/2}.
     """
@@ -99,10 +98,10 @@ def _degree(node: Expr, known: dict[Expr, int], bases: Mapping[Expr, Fraction]) 
 
 
 def _angle_degree(argument: Expr, bases: Mapping[Expr, Fraction]) -> int:
-    """Return roughly the degree of the sine of ``argument`` in sines and cosines of symbols, or of their multiples b*x.
+    """Return roughly the degree of ``sin(argument)``, written as a polynomial in sines and cosines of base angles.
 
-    ``bases`` maps x to b. A term c*x of the argument adds c/b. If ``bases`` lacks x, a term ``(p/q)*x`` adds p*q:
-    ``3*x + y/2`` gives 3 + 2.
+    The base angle of a symbol x is b*x if ``bases`` maps x to b: a term c*x of the argument then adds c/b. If ``bases``
+    lacks x, a term ``(p/q)*x`` adds p*q: ``3*x + y/2`` gives 3 + 2.
     """
     total = 0
     for term in argument.as_ordered_terms() if argument.is_Add else [argument]:

@@ -1,6 +1,6 @@
 """Rational points of quadrics, which are the zeros of polynomials of degree 2.
 
-A search gives one simple point; all other points lie on straight lines through it.
+A search gives one point with coordinates such as 3/5; every other point lies on a straight line through that point.
 """
 
 from collections.abc import Sequence
@@ -22,10 +22,10 @@ SIMPLE = tuple(
         (-1, 2), (-2, 3), (4, 1), (5, 1), (5, 13), (12, 13),
     )
 )  # fmt: skip
-"""Values that coordinates may have, the simplest first."""
+"""Numbers that are tried as coordinates of a point, the simplest first."""
 
 TRIES = 60
-"""The largest number of simple points that are tried on a quadric, and of lines through one of them."""
+"""The largest number of attempts to find a first point on a quadric, and of lines tried through this point."""
 
 
 def rational_square_root(value: Any) -> Any:

@@ -26,8 +26,8 @@ rational."""
 
 MOST_STEPS = 60
 MOST_TERMS = 300
-"""MOST_STEPS is the largest number of steps in one attempt to find a point, MOST_TERMS the largest number of terms in
-an equation that is still to be solved."""
+"""MOST_STEPS is the largest number of steps in one attempt to find a point that obeys the constraints, MOST_TERMS the
+largest number of terms in an equation that is still to be solved."""
 
 MOST_BARREN = 3
 """The number of failures to find an allowed point on a quadric, after which its equation is not solved as a quadric
@@ -211,7 +211,7 @@ class _Drawing:
         return self._solve(lambda slope: slope.is_ground)
 
     def fraction(self) -> bool:
-        """Solve an equation that is linear in an unknown for it, as ``y*x + z = 1`` for x.
+        """Solve an equation for an unknown in which it is linear, as ``y*x + z = 1`` for x.
 
         Return whether there was such an equation.
         """
@@ -373,5 +373,6 @@ _ORDERS: tuple[Sequence[_Step], ...] = (
     (_Drawing.factor, _Drawing.univariate, _Drawing.quadric, _Drawing.substitution, _Drawing.guess),
     (_Drawing.factor, _Drawing.univariate, _Drawing.guess),
 )
-"""Lists of steps by which the equations for a point are solved. Each attempt chooses a list at random and repeats its
-first step that applies; most systems of equations can be solved with at least one of the lists."""
+"""Lists of methods for solving the constraint equations. Each attempt to find a point chooses one list at random; then,
+until no equation is left, it applies the first method of this list that can be applied. Most systems of equations can
+be solved with at least one of the lists."""

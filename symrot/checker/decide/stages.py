@@ -32,7 +32,8 @@ from symrot.exact.ring.roots import written
 __all__ = ["STAGES", "ClaimCase", "domain_of_text", "leave_open", "nearby_witness"]
 
 MUCH_LARGER = 5
-"""A formula with more than this many times the symbols and operations of another is taken to have the longer text."""
+"""Ratio of sizes (numbers of symbols and operations) above which the smaller of two formulas is chosen as the shorter
+one, without writing both as text."""
 
 MOST_PIECES = 60
 """A sum that must be nonzero is simplified only if it has fewer symbols and operations than this. The simplified sum
@@ -153,10 +154,10 @@ def nearby_witness(case: ClaimCase) -> None:
 
 
 def branch(case: ClaimCase) -> Decision | None:
-    """Return "true" if a claim's text implies the signs that it needs, as sqrt(x) does for ``sqrt(x**2) == x``.
+    """Return the decision "true" if a claim holds for certain signs of formulas, and its text implies these signs.
 
-    Return "undecided" instead if no point is known at which both sides are real numbers, and None if the text does not
-    imply the signs.
+    ``sqrt(x**2)*sqrt(x) == x*sqrt(x)`` holds for x >= 0, which its sqrt(x) implies. Return "undecided" instead if no
+    point is known at which both sides are real numbers, and None if the text does not imply the signs.
     """
     case.branches, rings = _branches(case.ring, case.numerators)
     case.rely_on((*case.proof_rings, *rings))
@@ -289,9 +290,10 @@ def _is_long(requirement: Requirement) -> bool:
 def _within_range(
     ring: FormulaRing, numerator: PolyElement
 ) -> tuple[list[Requirement], tuple[FormulaRing, ...]] | None:
-    """Return [condition], the range of an inverse function in which a claim is true, and the rings of the proof.
+    """Return ([condition], rings): a range of values in which a claim with inverse functions is true, such as
+    ``-pi/2 <= asin(x) + asin(y) <= pi/2``, and the rings in which this is proven.
 
-    The list is empty if the claim is true without a condition. None if no such range is known.
+    The list is empty if the claim is true without a condition. Return None if no such range is known.
     """
     within = principal(ring, numerator)
     if within is None:

@@ -1,7 +1,7 @@
 """Claims for the rate of a rotation matrix, ``R' = [ω]× R``, tested on a rotation.
 
-Such a claim is recognised by its right side alone, whose letters may be those of the transposed matrix; only a test on
-one rotation shows that the R on the left is the R on the right.
+The claim was recognised by its right side alone. There, R may stand for the transpose of the matrix that R is on the
+left; a test with a rotation in place of R shows whether both sides mean the same matrix.
 """
 
 import re
@@ -28,10 +28,11 @@ REASON = "the equation is not proven for a rotation matrix {} with the angular v
 
 
 def tested_on_rotations(claim: Claim, verdict: Verdict) -> Verdict:
-    """Test a "recognised" equation for the rate of a matrix R on a general rotation; return the resulting verdict.
+    """Test an equation for the rate of a matrix R, such as ``R' = [ω]× R``, with a general rotation in place of R.
 
-    Return ``verdict`` if the equation is proven for R, "doubtful" if it is proven only with R in place of each R^T, and
-    else "definition". Other claims, and claims with other verdicts, are not tested: return ``verdict``.
+    Only an equation whose ``verdict`` is "recognised" (equal to a derived formula) is tested. Return ``verdict`` for
+    all other claims, and if the equation is proven. Return "doubtful" if the equation is proven only with R in place of
+    each R^T, otherwise "definition" (it may define R).
     """
     if verdict.verdict != "recognised" or claim.relation is None:
         return verdict

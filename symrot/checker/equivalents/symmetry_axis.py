@@ -15,7 +15,7 @@ TURNED: Mapping[str, Mapping[str, str]] = {"x": {"x": "z", "y": "x", "z": "y"}, 
 """Stated axis of symmetry -> {axis: its new name if the axis of symmetry is called z}."""
 
 MOMENT = re.compile(r"([IJk](?:_bar)?_?)([xyz])(\2)?")
-"""A moment of inertia, or a radius of gyration, about an axis; its second group is the axis."""
+"""Pattern of names of moments of inertia and radii of gyration about an axis, such as I_z; group 2 is the axis."""
 
 
 def with_axis_z(claim: Claim) -> EquivalentClaim | None:

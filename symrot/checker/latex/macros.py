@@ -47,7 +47,8 @@ DROPPED = {
 """Command that says nothing about the formula, such as ``\\label`` -> the number of arguments left out with it."""
 
 BRACED = ("\\underbrace", "\\overbrace")
-"""Commands after which an index or power is a remark on the formula, not a part of it."""
+"""Commands that draw a brace below or above a formula. An index or power after such a command, as in
+``\\underbrace{a + b}_{sum}``, is a remark on the formula and is left out."""
 
 LONGEST_NUMBER = 8
 """The number of tokens after ``\\quad`` that may hold an equation number such as ``(5.12)`` and the token after it."""

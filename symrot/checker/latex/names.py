@@ -269,9 +269,9 @@ class NamesPart(SumsPart):
         return Node("name", marked)
 
     def overlined(self, mark: tree.Accent | tree.Font) -> Node:
-        r"""Parse a name with an accent, ``\bar I``, another symbol than ``I``.
+        r"""Parse a name with an accent: ``\bar I`` is a name of its own, not the symbol ``I``.
 
-        A tilde over a vector gives its skew matrix, a line over a formula the conjugate.
+        A tilde over a vector gives the skew matrix of the vector, ``\overline`` over a formula its conjugate.
         """
         if tree.alone(mark.inside).text in VECTOR_MARKS and mark.text != "\\mathcal":
             inner = self.under(mark, self.expression)

@@ -123,13 +123,15 @@ def _read(
     source: str, where: str, names: Names, read: "Callable[[_Interpreter], list[Line]]",
     flips: Collection[tuple[str, int]] | None = None, upper: bool = True,
 ) -> "tuple[list[Line], _Interpreter]":  # fmt: skip
-    """Return the lines that ``read`` parses from a LaTeX text, and the interpreter that parsed them."""
+    r"""Return the lines that ``read`` parses from a LaTeX text, and the interpreter that parsed them.
+
+    ``flips`` are keys of the ambiguous parts of the text that get their less usual meaning; with None, an ambiguous
+    text is refused with InputError. ``upper`` chooses the upper signs of ``\pm`` and ``\mp``, otherwise the lower ones.
+    """
     # if a name without a mark turns out to be a vector only late in the text, the text is parsed again
     # so it is if a vector turns out to occur with and without a hat
     crossed, mixed = frozenset[str](), frozenset[str]()
     while True:
-        # flips are keys of ambiguous parts; if it is None, an ambiguous text is refused
-        # upper chooses the upper or lower signs of \pm
         reader = _Interpreter(source, where, names, flips, upper)
         reader.crossed, reader.mixed = set(crossed), mixed
         try:

@@ -84,9 +84,9 @@ def extent_of(pieces: Sequence[Token], start: int) -> tuple[Token, int]:
 
 
 def _of_letters(pieces: Sequence[Token], letters: Mapping[str, str]) -> dict[int, Shorthand]:
-    """Return {position: short form} for a text; ``letters`` maps letters to functions, as c to cos.
+    """Return {position: short form} for a text; ``letters`` maps the letters of short forms to functions, as c to cos.
 
-    Return {} unless there are both a cosine and a sine, and if c or s alone is a name in the text.
+    Return {} if the text lacks a short form of a cosine or of a sine, or if it has c or s alone, as a name.
     """
     named: dict[int, Shorthand] = {}
     numbered: dict[int, tuple[str, str]] = {}
@@ -115,8 +115,8 @@ def _of_letters(pieces: Sequence[Token], letters: Mapping[str, str]) -> dict[int
 def _numbered(pieces: Sequence[Token], numbered: Mapping[int, tuple[str, str]]) -> dict[int, Shorthand]:
     """Return {position: short form} for letters with a number, such as ``c_1``, which means cos(theta_1).
 
-    ``numbered`` is {position: (function, number)}, {0: ("cos", "1")} for ``c_1`` at position 0. Return {} if the
-    letters may be names, and if the text does not show the letter of the angles.
+    ``numbered`` is {position: (function, number)}, {0: ("cos", "1")} for ``c_1`` at position 0. Return {} if there are
+    so few cosines or sines that they may be names, or if the letter of the angles (theta) is unclear.
     """
     digits = {digit for _, number in numbered.values() for digit in number}
     # next to the rate of theta_1, c_2 and s_3 are functions of theta_2 and theta_3
@@ -135,9 +135,10 @@ def _numbered(pieces: Sequence[Token], numbered: Mapping[int, tuple[str, str]]) 
 
 
 def _has_rate(pieces: Sequence[Token], digits: Collection[str]) -> bool:
-    r"""Return whether a text has the rate of an angle with a number, ``\dot\theta_1``, and all numbers are 1, 2 or 3.
+    r"""Return whether a text has the rate of a numbered angle, such as ``\dot\theta_1``, and all numbers are 1, 2 or 3.
 
-    ``digits`` are the numbers of the short forms in the text.
+    All numbers are that of the angle and ``digits``, the numbers of possible short forms such as ``c_2`` for
+    cos(theta_2).
     """
     for place, piece in enumerate(pieces[:-3]):
         grouped = pieces[place + 1].text == "{"

@@ -43,10 +43,10 @@ SIGNS = {
 """Relation sign in LaTeX -> the sign in SymPy syntax: ``>=`` for ``\\geq``, ``==`` for ``=``."""
 
 QUATERNION_SIGNS = ("\\otimes", "\\circ", "\\odot")
-"""Signs of the product of quaternions."""
+"""LaTeX commands for operators that mean the product of quaternions, as in ``p \\otimes q``."""
 
 QUATERNION_LETTERS = ("q", "p", "Q", "P")
-"""Letters that are usually quaternions."""
+"""Letters that usually denote quaternions."""
 
 ENDS = frozenset([
     "", "+", "-", ")", "]", "\\}", "}", "&", "\\\\", ",", ";", "\\end", "\\cdot", "\\times", "*", "/", "^", "_", "'",

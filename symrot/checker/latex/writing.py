@@ -38,10 +38,14 @@ SUM, PRODUCT, SIGN, ATOM = 10, 20, 30, 50
 
 @dataclass(frozen=True)
 class LatexNotation:
-    """LaTeX as the notation for answers, with the names of the text's functions of time and vectors."""
+    """Writes the formulas of a verdict as LaTeX, in the style of the user's LaTeX text.
+
+    ``functions`` are the functions of time in that text, ``vectors`` maps the names of its vectors to whether they have
+    a hat.
+    """
 
     functions: Collection[str] = ()
-    vectors: Mapping[str, bool] = field(default_factory=dict)  # name -> whether the vector has a hat
+    vectors: Mapping[str, bool] = field(default_factory=dict)
 
     def formula(self, node: Node) -> str:
         """Return the LaTeX of a formula, or its SymPy syntax if parsing the LaTeX would not give the same formula."""

@@ -17,15 +17,20 @@ from symrot.checker.claim.interpreter import atoms_of
 __all__ = ["PRIME", "Fingerprint", "NotInField", "Values", "fingerprint", "in_lowest_terms", "values_at"]
 
 PRIME = 2**61 - 1  # different functions agree at a random point with a probability of 1e-18
-"""A prime that is 3 modulo 4: 1 + u^2 is then never 0, as cosines and sines need, and a square root is one power."""
+"""The number of elements of the field in which formulas are evaluated, a prime that is 3 modulo 4.
+
+Modulo such a prime, 1 + u^2 is never 0, so that (1 - u^2)/(1 + u^2) always exists as a cosine; and the square root of a
+value is simply its power (PRIME + 1)/4.
+"""
 DRAWS = tuple((pow(3, 101 + 2 * n, PRIME), pow(3, 102 + 2 * n, PRIME)) for n in range(48))
 """Pairs (value of one symbol, value of all other symbols), tried in turn until the formula is defined."""
 MOST_UNDEFINED = 3
-"""The number of pairs in DRAWS that are tried for one formula. All symbols but one are equal then; so a formula without
-a value for any of these pairs, such as x/(A - B), probably has none wherever two symbols are equal.
+"""The number of pairs in DRAWS that are tried for one formula. With each pair, all symbols but one have the same value;
+so a formula that has no value for any of these pairs, such as x/(A - B), probably has none wherever A equals B.
 """
 PARTS = 4
-"""cos(x) and sin(x) are computed from cos(x/4) and sin(x/4), so that half and quarter angles have values too."""
+"""The number of parts into which an angle x is divided: cos(x) and sin(x) are computed from cos(x/4) and sin(x/4), so
+that cosines and sines of x/2 and x/4 have values too."""
 MOST_CANCELLED = 10
 """The largest number of atoms in a formula whose fractions are cancelled. For the inverse of a tensor, which has more,
 this would take seconds.
@@ -157,9 +162,10 @@ class Fingerprint:
     idle: tuple[Expr, ...] = ()  # atoms in the formula that do not change its value
 
     def rows(self, order: Sequence[int]) -> list[Values]:
-        """Return each atom's signature with its values in ``order``, and all values divided by one common number.
+        """Return the signature of each atom, scaled so that the formulas x and 2*x have the same rows.
 
-        Thus the formulas x and 2*x have the same rows.
+        The values of each signature come in ``order``, the indices of the formula's entries. They are divided by the
+        sum of all atoms' values for the first entry for which this sum is not zero.
         """
         total = [sum(column) % PRIME for column in zip(*self.signatures, strict=True)]
         # the first entry whose values have a nonzero sum
@@ -208,9 +214,10 @@ def fingerprint(entries: Sequence[Expr]) -> Fingerprint:
 
 
 def in_lowest_terms(formula: Expr) -> bool:
-    """Return whether a product has no divisor that divides its other factors, as a - b divides those of
-    ``(a**2 - b**2)/(a - b)``. False also if this test cannot tell: for a divisor that is linear in no atom, and for a
-    formula without a value modulo ``PRIME``.
+    """Return whether a product is in lowest terms: not so ``(a**2 - b**2)/(a - b)``, whose numerator a - b divides.
+
+    False also if this test cannot tell: for a divisor that is linear in no atom, and for a formula without a value
+    modulo ``PRIME``.
     """
     # quicker than cancel: a divisor that is linear in x divides the rest only if the rest is 0 at its root
     atoms = sorted(atoms_of([formula]), key=str)
@@ -234,9 +241,10 @@ def _misses(rest: Expr, divisor: Expr, point: Mapping[Expr, int]) -> bool:
 
 
 def _from_one_draw(entries: Sequence[Expr], written: Sequence[Expr]) -> Fingerprint | None:
-    """Return the fingerprint of the formula ``entries`` with the atoms ``written``, from the first pair in DRAWS.
+    """Return the fingerprint of the formula ``entries`` by the first pair of values in DRAWS alone, or None.
 
-    Return None if the formula has no value there, or does not change with one of its atoms: others must be tried.
+    ``written`` are the formula's atoms (symbols, functions, derivatives). Return None if the formula has no value for
+    this pair, or does not change with one of its atoms: the caller then tries other pairs.
     """
     raised, others = DRAWS[0]
     point = dict.fromkeys(written, others)
@@ -255,8 +263,9 @@ def _from_one_draw(entries: Sequence[Expr], written: Sequence[Expr]) -> Fingerpr
 def _sum_over_pairs(entries: Sequence[Expr], atom: Expr, atoms: Sequence[Expr], written: Sequence[Expr]) -> Values:
     """Return the signature of ``atom`` for a formula that is undefined where two atoms are equal, such as x/(A - B).
 
-    It is a sum of values of the formula: for each other atom in ``atoms``, on which the formula depends, the value
-    where ``atom`` and this other atom have numbers of their own. All other atoms in ``written`` have a third number.
+    The signature is a sum of values of the formula, one for each other atom in ``atoms``, the symbols on which the
+    formula depends. In this value, ``atom`` has one number, the other atom a second one, and all remaining symbols in
+    ``written`` a third one. Raise NotInField if the formula has none of these values.
     """
     raised, others = DRAWS[0]
     second, _ = DRAWS[1]

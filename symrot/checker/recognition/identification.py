@@ -172,20 +172,22 @@ def identified(
     is_relation: bool = False,
     fits: Callable[[Identification], bool] = _any,
 ) -> Iterator[Identification]:
-    """Yield the known formulas to which a SymPy value is equal, those with the fewest changes and renamings first.
+    """Yield the formulas known to symrot that equal a SymPy value, perhaps transposed or with other letters.
+
+    First come the formulas that need the fewest such changes (transpose, sign, factor) and the fewest other letters.
 
     Parameters
     ----------
     value : Any
-        A scalar or matrix. If ``is_relation``, it is the difference of an equation's sides, and known relations are
-        searched.
+        A scalar or matrix, from a claim of a user. If ``is_relation``, the value is the difference of the sides of the
+        claim's equation, and only known relations are searched.
     steps : bool
         Whether steps of derivations are searched too.
     named : bool
         Whether the claim has a name for the value. Otherwise products of few symbols are left out.
     quantity : str or None
-        The name that the claim gives to the value. If there is one, the renaming must not mix up axes:
-        if I_1 stands for the moment about some axis, omega_1 must be the component along the same axis.
+        The name that the claim gives to the value. If there is one, the letters of the claim must not mix up axes: if
+        I_1 stands for the moment about some axis, omega_1 must be the component along the same axis.
     fits : function
         Takes a known formula, as Identification; tells whether the author of a claim can mean it, judged by units and
         names. The formulas that cannot be meant are left out.

@@ -1,4 +1,7 @@
-"""The formulas that symrot derives, with names and fingerprints; running this module writes ``known_formulas.toml``."""
+"""The formulas that symrot derives, with their names; running this module prints them into ``known_formulas.toml``.
+
+Formulas are found there by their fingerprint, a hash that does not depend on the names of symbols.
+"""
 
 import json
 import re
@@ -33,7 +36,8 @@ LONGEST = 6000
 """The largest number of characters in a formula with a name of its own in ``known_formulas.toml``."""
 
 LONGEST_DERIVED = 900
-"""The same for a formula that is only a side of a step in a derivation."""
+"""The largest number of characters in a formula of ``known_formulas.toml`` that has no name of its own and is only a
+side of a step in a derivation."""
 
 
 @dataclass(frozen=True)
@@ -130,7 +134,8 @@ def _related() -> Iterator[Named]:
 
 
 SCALAR_PRODUCTS = ("power of a torque", "kinetic energy from the angular momentum")
-"""Names of formulas of the form a . b; a claim means one only with the letters that books use for these vectors."""
+"""Names of formulas that are a scalar product a . b. Every scalar product equals such a formula; so a claim means it
+only with the letters that books use for its two vectors."""
 
 
 def _selected(
@@ -141,7 +146,9 @@ def _selected(
 ) -> Iterator[tuple[str, Known]]:
     """Yield (key, formula) for formulas with at least ``least`` symbols and at most ``longest`` characters.
 
-    Leave out formulas without a fingerprint, repetitions, and most formulas whose entries are just different symbols.
+    The key is the hash by which the formula is looked up, with ``=`` in front if ``is_relation``. Leave out formulas
+    without such a hash (:func:`fingerprint` raises NotInField), repetitions, and most formulas whose entries are just
+    different symbols.
     """
     general = (*GENERAL, *OF_ONE_ENTRY)
     of_letters = {*(name for name, *_ in _formulas_of(along_axes)), GYROSCOPE, *SCALAR_PRODUCTS, *ANY_VECTORS, *general}
@@ -175,9 +182,9 @@ def ending_of(name: str) -> str:
 
 
 def relation_key(key: str, is_relation: bool) -> str:
-    """Return the key of a formula in ``known_formulas.toml``: its ``key``, with ``=`` in front for a relation.
+    """Return the key of a formula in ``known_formulas.toml``: the hash ``key``, with ``=`` in front for a relation.
 
-    ``key`` is the hash of its fingerprint.
+    The hash, a result of :meth:`Fingerprint.key`, does not depend on the names of symbols.
     """
     return f"={key}" if is_relation else key
 

@@ -17,7 +17,7 @@ LETTERS = {"A": 1, "B": 2, "C": 3, "p": 1, "q": 2, "r": 3, "x": 1, "y": 2, "z": 
 """Single letter -> its axis: principal moments, the angular velocity of an aircraft, and coordinates."""
 
 CYCLIC = ((1, 2, 3), (2, 3, 1), (3, 1, 2))
-"""The orders of axes that keep right-handed axes right-handed; Euler's equations change signs under the others."""
+"""The orders of axes that keep right-handed axes right-handed; Euler's equations change signs under other orders."""
 
 COMPONENTS = {"first": "1", "second": "2", "third": "3", "scalar": "0"}
 
@@ -71,10 +71,11 @@ def _pair_of_quantities(known: str, new: str) -> tuple[str, str]:
 
 @cache
 def _orders(known: str, new: str) -> tuple[frozenset[tuple[int, ...]], frozenset[tuple[int, ...]]]:
-    """Return (orders, orders for a transposed matrix): the orders in CYCLIC that turn ``known`` to the axes of ``new``.
+    """Return the cyclic exchanges of axes that give a symbol ``known`` the axes of another symbol ``new``.
 
-    The order (2, 3, 1) turns omega_1 into omega_2, and R_12 into R_23 or, in a transposed matrix, into R_32. A name
-    without axes allows all orders.
+    The result is a pair of sets of tuples from CYCLIC, the second set for a transposed matrix. The tuple (2, 3, 1)
+    replaces axis 1 by 2, 2 by 3 and 3 by 1: omega_1 becomes omega_2, and R_12 becomes R_23 or, transposed, R_32. If one
+    of the symbols has no axes, all exchanges are returned.
     """
     axes, own = axes_of(known), axes_of(new)
     moved_axes = {order: {order[axis - 1] if axis else 0 for axis in axes} for order in CYCLIC}
@@ -88,7 +89,11 @@ def _orders(known: str, new: str) -> tuple[frozenset[tuple[int, ...]], frozenset
 
 
 def _keeps_time_order(renaming: Mapping[str, str]) -> bool:
-    """Return whether numbered names for initial and final values are in order: w_1 for omega_i, w_2 for omega_f."""
+    """Return whether the claim's names for initial and final values are numbered in the order of time.
+
+    ``renaming`` maps symbols of a known formula to names of a claim: with w_2 for the initial omega_i and w_1 for the
+    final omega_f, return False. Return True for names without numbers.
+    """
     for earlier, later in EARLIER_AND_LATER:
         if earlier in renaming and later in renaming:
             numbers = [name[-1] for name in (renaming[earlier], renaming[later]) if re.search("[0-9]$", name)]

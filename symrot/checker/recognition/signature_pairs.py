@@ -29,8 +29,10 @@ def name_of(atom: Expr) -> str:
 def pairings(theirs: Fingerprint, own: Fingerprint, order: Sequence[int]) -> Iterator[dict[Expr, Expr]]:
     """Yield {symbol of a known formula: symbol of a claim's formula} for the ways to pair all their symbols.
 
-    ``theirs`` is the fingerprint of the known formula, ``own`` that of the claim's formula, whose entries are compared
-    in ``order``. Yield nothing if the signatures differ.
+    ``theirs`` is the fingerprint of the known formula, ``own`` that of the claim's formula. A fingerprint has for each
+    symbol a signature, numbers that do not depend on the symbol's name; only symbols with equal signatures are paired.
+    Yield nothing if that leaves symbols unpaired. ``order`` are indices of entries of the claim's formula, if this is a
+    matrix, in the order of the known formula's entries.
     """
     # symbols are paired if their signatures are equal; pairs with equal names come first
     mine: dict[Values, list[Expr]] = {}
@@ -54,7 +56,10 @@ def pairings(theirs: Fingerprint, own: Fingerprint, order: Sequence[int]) -> Ite
 
 
 def _nearest(atoms: Sequence[Expr], others: Sequence[Expr]) -> list[tuple[Expr, ...]]:
-    """Return ``others`` in several orders, to be paired one by one with ``atoms``; the most plausible order first."""
+    """Return the symbols ``others`` in several orders, the most plausible order first.
+
+    In each order, the symbols are to be paired one by one with ``atoms``, the symbols of another formula.
+    """
     known = {atom: (name_of(atom), unit_of(name_of(atom))) for atom in (*atoms, *others)}
 
     def difference(atom: Expr, other: Expr) -> int:
@@ -71,7 +76,11 @@ def _nearest(atoms: Sequence[Expr], others: Sequence[Expr]) -> list[tuple[Expr, 
 def _likeliest(
     atoms: Sequence[Expr], others: Sequence[Expr], known: Mapping[Expr, tuple[str, str | None]]
 ) -> list[Expr]:
-    """Return ``others`` reordered so that each symbol fits the one at the same position in ``atoms``."""
+    """Return the symbols ``others`` in the order that suits ``atoms``, the symbols of another formula.
+
+    Each symbol has, if possible, the unit, name, first letter and axis of the atom at the same position. ``known`` maps
+    each symbol to its name and unit.
+    """
     # for many symbols the caller cannot try all orders, and begins with this one
     rest, ordered = list(others), []
     names = {plain_name(known[atom][0]) for atom in atoms}

@@ -27,9 +27,9 @@ LETTERS = {
 
 
 def has_usual_letter(known: str, own: str) -> bool:
-    """Return whether books use the letter ``own`` with the unit of ``known``, a symbol of a known formula.
+    """Return whether ``own`` is a usual letter in books for a quantity with the unit of ``known``: M for the mass m.
 
-    True also for a unit without an entry in ``LETTERS``.
+    ``known`` is a symbol of a known formula. True also if its unit is unknown or has no entry in ``LETTERS``.
     """
     pattern = LETTERS.get(UNIT_OF_NAME.get(known, ""))
     return pattern is None or re.fullmatch(pattern, plain_name(own)) is not None

@@ -37,10 +37,10 @@ MOST_EDITS = 40_000
 """The largest number of edits of one side or definition that are tried."""
 
 MOST_PAIRS_OF = 90
-"""The number of edits, the cheapest ones, that are tried in pairs."""
+"""Number of the cheapest edits of a claim that are tried in pairs."""
 
 MOST_PROOFS = 10
-"""The largest number of candidates that the exact engine decides in one stage of the search."""
+"""The largest number of edited claims that one stage of the search for repairs tries to prove exactly."""
 
 MOST_REPAIRS = 3
 
@@ -51,15 +51,16 @@ A claim that takes more than a quarter of this number by itself gets no repairs.
 """
 
 TELLING = frozenset(FAULT_DESCRIPTIONS) - {"two_faults", "extra_term", "wrong_symbol", "missing_term"}
-"""Codes of the faults that a diagnosis may take from an edit that makes both sides the same formula.
+"""Codes of faults that count as the probable fault of a claim if undoing the fault makes both sides the same formula.
 
-Such an edit shows the probable fault, but is not offered as a repair: the edited claim says nothing.
+Such an edit is not offered as a repair, because the edited claim, such as ``a == a``, says nothing.
 """
 
 AS_NEAR = 0.35
-"""Largest difference in cost between the cheapest repair and a repair to the same formula written in another way.
+"""Largest difference in cost between two formulas that count as about equally near to the claim.
 
-A repair also costs at most this much more than the cheapest edit that makes both sides the same formula.
+A proven repair is offered only if it costs at most this much more than the cheapest edit that makes both sides the same
+formula. Another notation of a repair is offered only if it costs at most this much more than the cheapest repair.
 """
 
 MOST_COSTLY = 9.0
@@ -218,8 +219,10 @@ class _Search:
         return any(map(_symbols, dict(bare))) or (len(bare) == len(sides) and bool(equation.divisors))
 
     def proven(self, candidates: Iterable[Candidate], most: int) -> list[Repair]:
-        """Return repairs from the first candidates, ``most`` at most, that the exact engine proves to be true,
-        everywhere or in a range such as 0 <= x <= pi.
+        """Return at most ``most`` repairs: the first candidates that are proven to be true.
+
+        A candidate may also be true only in a range such as 0 <= x <= pi, unless the claim itself is "conditional". At
+        most MOST_PROOFS proofs are tried.
         """
         repairs: list[Repair] = []
         attempts = 0

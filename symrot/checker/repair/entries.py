@@ -12,11 +12,15 @@ from symrot.checker.repair.points import UndefinedValue, agree, entries_of
 __all__ = ["by_entries", "merged"]
 
 MOST_PAIRS_OF = 60
-"""The number of edits of one wrong matrix entry, the cheapest ones, that are combined in pairs to correct the entry."""
+"""Number of the cheapest edits of a wrong matrix entry that are combined in pairs, if no single edit corrects it."""
 
 
 def by_entries(numeric: NumericFilter) -> list[Candidate]:
-    """Return repairs of a written-out matrix on one side of the claim; each edits every wrong entry by itself."""
+    """Return repairs of a written-out matrix on one side of the claim: at most one repair for each side.
+
+    A repair corrects all wrong entries of the matrix, each by one edit or two. A matrix gets none if an entry cannot be
+    corrected so, or if a single edit of one entry is enough.
+    """
     candidates: list[Candidate] = []
     # the other side has the values that the entries should have
     references = {"right": numeric.left, "left": numeric.right}

@@ -18,8 +18,9 @@ from symrot.checker.repair.points import Point, UndefinedValue, agree, entries_o
 __all__ = ["SIDES", "Candidate", "Change", "NumericFilter", "at", "is_nontrivial", "matrix_entries"]
 
 MOST_PIECES = 500_000
-"""The largest number of nodes of trees that the search may evaluate, which takes some seconds; a node costs more if it
-has many arguments, or is evaluated for its derivatives too.
+"""The largest number of nodes of formulas that the search for repairs of a claim may evaluate: some seconds of work.
+
+A node counts more than once if it has many arguments, or is evaluated for its derivatives too.
 """
 
 SIDES = ("right", "left")
@@ -152,7 +153,10 @@ class NumericFilter:
         return wrong
 
     def open_paths(self, place: str, tree: Node) -> "OpenEntries":
-        """Return a function of a path that tells whether a single edit of ``tree`` may change the part at this path."""
+        """Return a function that tells whether one edit of the part of ``tree`` at a path could make the claim true.
+
+        It returns False in an entry of a written-out matrix, unless this entry is the only wrong one.
+        """
         cells = matrix_entries(tree) if place in SIDES else {}
         # an entry of a written-out matrix may change only if no other one is wrong
         alone = [cells[number] for number in self.wrong if number in cells] if len(self.wrong) == 1 else []
@@ -175,9 +179,9 @@ class NumericFilter:
         return point.value(left), point.value(right)
 
     def redefined(self, point: Point, name: str, tree: Node) -> Point:
-        """Return a copy of a point at which the definition of ``name`` is ``tree``.
+        """Return a copy of a test point that evaluates the name ``name`` by the formula ``tree``.
 
-        Stored values that do not depend on the definition are reused.
+        The copy keeps the stored values that do not depend on the definition of ``name``.
         """
         if name not in self.dependent:
             self.dependent[name] = self._dependent_on(name)

@@ -24,10 +24,13 @@ from symrot.exact.ring.ring import FormulaRing, as_zero
 __all__ = ["exchanged_definitions", "missing_matrices", "missing_terms"]
 
 MOST_BRACKETS = 12
-"""Largest number of parts of a matrix entry or side to which a missing term is added: ``a*(b + m)`` for ``a*b``."""
+"""Largest number of places inside a formula (a side or matrix entry) that are tried for a missing term m.
+
+In ``a*b`` the places are a and b, which gives ``(a + m)*b`` and ``a*(b + m)``.
+"""
 
 MOST_BRACKETS_OF_LARGE = 2
-"""The same number as ``MOST_BRACKETS``, for an entry or side with at least ``LARGE`` nodes."""
+"""Largest number of such places in a formula with at least ``LARGE`` nodes."""
 
 LARGE = 300
 
@@ -42,9 +45,10 @@ MOST_TERMS_READ, MOST_ROOTS_READ = 1000, 12
 
 
 def missing_terms(numeric: NumericFilter) -> Iterator[Candidate]:
-    """Yield repairs that add one term to each wrong entry or, if only one entry is wrong, inside a bracket of it.
+    """Yield repairs that add one missing term to each wrong entry of a side (to the whole side, if it is no matrix).
 
-    The term is the exact difference of the sides in this entry; for a bracket, it is divided by the bracket's factor.
+    The term is the exact difference of the two sides in the entry. If only one entry is wrong, repairs follow that add
+    the term, divided by the factor of a bracket, inside the bracket: ``a*(b + m)`` for ``a*b``.
     """
     equation = numeric.claim.equation
     (lefts, shape), (rights, other) = flatten(equation.left), flatten(equation.right)
@@ -152,7 +156,11 @@ def exchanged_definitions(numeric: NumericFilter) -> Iterator[Candidate]:
 
 
 def _term(residual: Any, piece: Node | None) -> Node | None:
-    """Return the difference of two sides as the tree of one short term such as ``m*r**2``; None if it is longer."""
+    """Return ``residual``, the difference of the claim's sides, as the tree of one short term; None if it is longer.
+
+    ``piece`` is the formula to which the term is to be added. A term with a sum in brackets may be at most half as long
+    as this formula, unless the formula is 0.
+    """
     above, below = residual.as_numer_denom()
     if not below.is_number or not residual.free_symbols:
         return None

@@ -18,7 +18,7 @@ MOST_JOINED = 400
 """The largest number of pairs of edits that are tried, the cheapest first."""
 
 DIGITS = 8
-"""Number of decimals to which effects of edits are compared, relative to the largest number in the common effect."""
+"""Number of decimals to which effects of edits are compared, in units of the largest number in the effect of a pair."""
 
 Values = tuple[float, ...]
 
@@ -51,7 +51,7 @@ def pair_of(numeric: NumericFilter, first: Change, second: Change) -> tuple[Chan
 
 
 Effects = tuple[Values, dict[int, Values]]
-"""The common effect that two edits must have to make the sides equal, and {index of an edit: its effect}.
+"""A pair (effect that two edits must have together to make the sides equal, {index of an edit: its effect alone}).
 
 The effect of an edit is how much it reduces left - right, for each matrix entry, or the factor by which it divides
 left/right.
@@ -62,7 +62,7 @@ def _differences(numeric: NumericFilter, changes: Sequence[Change]) -> Effects:
     """Return left - right of the claim at the first test point, and {index in ``changes``: effect of the edit}.
 
     The effect is how much the edit reduces left - right, for each matrix entry. Edits that leave a side without a value
-    have no effect here.
+    are left out.
     """
     point = numeric.points[0]
     whole = tuple(numeric.differences(point, ()))
@@ -83,7 +83,7 @@ def _quotients(numeric: NumericFilter, changes: Sequence[Change]) -> Effects:
     """Return left/right of the claim at the first test point, and {index in ``changes``: factor of the edit}.
 
     The edit divides left/right by this factor. Both results are empty for matrices, and if a side of the claim is zero.
-    Edits of definitions have no factor here.
+    Only edits of the left or the right side have an entry, not those of a definition that the claim uses.
     """
     point = numeric.points[0]
     left, right = (entries_of(side) for side in numeric.sides(point, ()))

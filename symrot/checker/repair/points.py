@@ -51,12 +51,13 @@ from symrot.kinematics.hamilton import hamilton
 __all__ = ["Point", "UndefinedValue", "agree", "entries_of", "points"]
 
 DERIVATIVES = 6
-"""The number of values that a point has for each function of time: the function's own and those of its derivatives."""
+"""Number of values that a test point has for a function of time: one for the function, five for its derivatives."""
 
 HEAVIEST = 3**5
-"""Largest weight of a point that is copied with dual numbers, which triples the weight for each nested derivative.
+"""Largest ``weight`` (cost of a multiplication) of a `Point` from which a derivative can be computed.
 
-So at most six derivatives inside each other are possible.
+A derivative is computed at a copy of the point with dual numbers, whose weight is three times that of the point. So at
+most six derivatives inside each other are possible.
 """
 
 GAUSS = {1: 20, 2: 18, 3: 16}

@@ -25,24 +25,28 @@ ONES = (1, -1)
 """The only numbers that a repair may add to a formula as a missing term: a term 1 is easily forgotten."""
 
 HOLE = Node("name", "?")
-"""The unknown part of a formula, under a name that no text can contain."""
+"""Placeholder for the unknown part of a formula: a name that no text can contain."""
 
 CLOSE = 1e-8
 """The largest relative difference between values that are taken to be equal."""
 
 MOST_ATOMS, MOST_SUMS, MOST_PRODUCTS = 24, 24, 4000
-"""Largest numbers, in a `Vocabulary`: of symbols and functions, of sums in brackets, of products of the symbols and
-functions.
+"""Largest numbers in a `Vocabulary`: of symbols and functions together, of bracketed sums, and of products.
+
+The products are those of the symbols and functions alone; products with a bracketed sum are not counted.
 """
 
 MOST_MATRICES, MOST_COLUMNS = 40, 5
-"""Largest number of matrices whose multiples are tried as a missing term, and of named vectors in scalar products."""
+"""Largest number of matrices whose multiples are tried as a missing term, and largest number of vectors.
+
+The scalar products of two of these vectors are tried as factors.
+"""
 
 LARGEST_RATIO = 60
 """Largest denominator of a rational number in a repair, such as 2/3 in a factor that was forgotten."""
 
 LARGEST_OF_SIDE = 1000
-"""The same limit for the factor of a whole side, or of a term or factor that is not nested deeper in a side."""
+"""Largest denominator of a rational number that multiplies a whole side of the claim, or a term or factor of a side."""
 
 Values = tuple[float, ...]
 """The values of a formula, one for each test point."""
@@ -139,7 +143,10 @@ class Vocabulary:
         return values[0] / values[1]
 
     def find(self, values: Values) -> Iterator[tuple[Entry, Fraction]]:
-        """Yield (product, ratio) for each product whose values times a rational ratio are ``values``."""
+        """Yield (product, ratio) for each product of which ``values`` are a rational multiple: ratio times the product.
+
+        Products of few factors come first. Nothing is yielded if one of ``values`` is zero.
+        """
         if not all(values):
             return
         key = self._key(values)
@@ -175,8 +182,9 @@ def _rational(values: Sequence[float], largest: int = LARGEST_RATIO) -> Fraction
 
 
 def solutions(numeric: NumericFilter) -> list[Candidate]:
-    """Return the repairs that replace one part of the claim by a value with which it holds at the test points, the
-    nearest first.
+    """Return the repairs that replace one part of the claim by a short formula, the nearest first.
+
+    With this formula the claim holds at the test points.
     """
     if len(numeric.points) < 2 or not (is_nontrivial(numeric.left) or is_nontrivial(numeric.right)):
         return []  # a wrong number alone does not tell which formula was meant

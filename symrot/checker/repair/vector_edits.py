@@ -1,4 +1,4 @@
-"""Repairs of formulas with vectors and matrices: a square of a matrix that is missing, a missing term ``p0*q``."""
+"""Repairs of formulas with vectors and matrices: M^2 for a matrix M, M for M^2, or a missing term ``p0*q``."""
 
 from collections.abc import Iterator
 

@@ -22,19 +22,20 @@ WHOLE = (
 """Codes of the faults that usually change all values of a side or definition, such as a transposed rotation."""
 
 MOST_WHOLE = 14
-"""The largest number of edits against a fault in ``WHOLE`` that are tried as the first of two edits."""
+"""The largest number of edits that are tried as the first of two edits, each of which undoes a fault in ``WHOLE``."""
 
 MOST_EDITS = 3000
-"""The largest number of single edits of one side or definition that are tried as the second edit, after each first."""
+"""For each first edit: the largest number of second edits that are tried in one side or definition of the claim."""
 
 MOST_PIECES_AFTER = 240_000
-"""The largest number of nodes of trees that may be evaluated in the search for the second edit, after each first."""
+"""For each first edit: the largest number of nodes of formulas that the search for a second edit may evaluate."""
 
 
 def after_whole_edits(numeric: NumericFilter, changes: Sequence[Change]) -> Iterator[Candidate]:
-    """Yield repairs with two changes: one of ``changes`` against a fault in ``WHOLE``, and one against another fault.
+    """Yield repairs that are true at the test points, each with two changes of the claim.
 
-    All repairs are true at the test points.
+    The first is one of ``changes`` and undoes a fault in ``WHOLE``, such as a wrong sign of a whole side. The second
+    undoes any other fault; both may change the same side.
     """
     for first in islice((change for change in changes if change.edit.code in WHOLE), MOST_WHOLE):
         claim = numeric.edited([first])

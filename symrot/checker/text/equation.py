@@ -77,9 +77,11 @@ def _with_complex_repairs(claim: Claim, verdict: Verdict) -> Verdict:
 
 
 def _on_inertia_matrix(claim: Claim, verdict: Verdict) -> Verdict:
-    """Return the verdict with I as a tensor of inertia for ``I = -m [r]^2``, which is false for the unit matrix I.
+    """Return the verdict on an equation such as ``I = -m [r]^2``, where I may be an inertia tensor or the unit matrix.
 
-    Return ``verdict`` for other equations.
+    ``verdict`` is the verdict for the unit matrix. If the verdict for an inertia tensor is neither "false" nor
+    "definition", return it. Otherwise return "definition" if the other side is a matrix or has a mass or an inertia,
+    and ``verdict`` if not. Return ``verdict`` also for an equation without such a side.
     """
     sides = claim.relation[1:] if claim.relation else ()
     units = [side for side in sides if side.value == "eye"]

@@ -23,7 +23,10 @@ WORST_FIRST = ("false", "doubtful", "undecided", "conditional", "definition", "r
 APART = "each line is a formula that symrot derives, but no single body, frame or sequence gives all of them"
 
 MOST_LINES, MOST_EDITS_OF_LINE = 4, 120
-"""The largest number of lines, and of edits of each, in the search for an edit that makes the lines fit together."""
+"""Largest numbers of lines of a claim, and of edits of each line, in the search for an edit of one wrong line.
+
+The edit must make all lines formulas of the same body, frame or sequence.
+"""
 
 NAMING = ("definition", "recognised")
 
@@ -42,8 +45,8 @@ def verdict_on_parts(
 
     Definitions of names that other lines use do not count. The verdict is "doubtful" if each equation is recognised,
     but as formulas of different bodies, frames or sequences.
-    ``verdicts`` are those on the equations of ``lines``, in order. If ``has_units``, the first side of a chain is
-    a number with a unit, not a name.
+    ``verdicts`` are the verdicts on the equations of ``lines``, in order. If ``has_units``, the first side of a chain
+    is a number with a unit, not a name.
     """
     remaining = iter(verdicts)
     counted, notes = [], []
@@ -92,8 +95,9 @@ def verdict_on_parts(
 def _with_fitting_line(
     claims: Sequence[Claim], lines: Sequence[tuple[str, Collection[str], Verdict]], notation: Notation, verdict: Verdict
 ) -> Verdict:
-    """Return the verdict on lines that contradict each other, with the edit of one line that makes all of them fit, if
-    there is one.
+    """Return ``verdict``, on lines for different bodies, frames or sequences, with an edit of one line as a repair.
+
+    After the edit all lines are for the same body, frame or sequence. Return ``verdict`` unchanged if there is none.
     """
     if len(lines) != len(claims) or len(lines) > MOST_LINES or any(claim.hypotheses for claim in claims):
         return verdict
@@ -133,11 +137,11 @@ def with_all_conditions(verdict: Verdict, conditions: Sequence[Sequence[str]], b
 
 
 def _as_named_chain(line: Sequence[Claim], verdicts: Sequence[Verdict], notation: Notation) -> list[Verdict]:
-    """Return ``verdicts``, those on the equations of a chain ``name = a = b``, with other verdicts on ``a = b``.
+    """Return the verdicts on the equations of a chain ``name = a = b``; the verdict on ``a = b`` may be replaced.
 
-    If ``a = b`` is no identity and each side has letters that the other side lacks, its verdict is replaced by the one
-    on ``name = b``. If b is a number and ``a = b`` is false in general but may hold for some values of its letters, as
-    sin x = 1/2 does, the verdict becomes "definition". In a chain that does not begin with a name, nothing is replaced.
+    If ``a = b`` is no identity, and a and b each have a letter that the other one lacks, the verdict on ``name = b``
+    replaces the verdict on ``a = b``. If b is a number and ``a = b`` is false in general, but a depends on letters as
+    in sin x = 1/2, its verdict becomes "definition". Chains that begin with no name keep their ``verdicts``.
     """
     named = named_formula(line[0]) if len(line) > 1 else None
     if named is None or line[0].relation is None or line[0].relation[1] != named.side:

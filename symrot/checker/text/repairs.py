@@ -16,7 +16,7 @@ from symrot.errors import InputError
 __all__ = ["as_inequality", "as_typed", "as_typed_repairs", "in_notation", "relation_of"]
 
 AS_TYPED = ("degrees",)
-"""The codes of repairs whose text is already in the notation of the claim's text."""
+"""Fault codes (`Repair.code`) of the repairs whose text is already in the notation of the claim's text."""
 
 CALLS_FOR_ARRAYS = ("qmul(", "eye(", "⊗", "\\otimes")
 """Calls and signs: if a claim's text has none of them, its repairs are written without calls such as ``qmul``."""

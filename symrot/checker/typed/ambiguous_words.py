@@ -25,15 +25,16 @@ FIRST_AND_LAST = ("i", "f")
 
 
 class WordReader:
-    """The reader of the words of a text in which the ambiguous words with the keys ``flips`` have their less usual
-    meaning.
+    """A reader that divides and joins the words of a text according to their meaning: ``mgl`` into m, g and l.
+
+    An ambiguous word gets its less usual meaning if its key, (kind of the ambiguity, position), is in ``flips``.
 
     Attributes
     ----------
     notes : list of str
         Sentences about how the words are read.
     doubts : list of Doubt
-        The ambiguous words.
+        The ambiguous words that were met.
     """
 
     def __init__(
@@ -56,7 +57,10 @@ class WordReader:
         return tokens
 
     def is_flipped(self, kind: str, start: int, excerpt: str) -> bool:
-        """Add an ambiguous piece of the text to the doubts, and return whether it has its less usual meaning."""
+        """Add the ambiguous text ``excerpt`` to ``doubts``; return whether ``flips`` asks for its less usual meaning.
+
+        ``kind`` is the kind of the ambiguity, and ``start`` the position of the text.
+        """
         self.doubts.append(Doubt((kind, start), excerpt))
         return (kind, start) in self.flips
 
@@ -113,7 +117,7 @@ class WordReader:
         return all(after.kind == "name" and after.spaced for after in pairs)
 
     def without_shorthand(self, tokens: list[Token]) -> list[Token]:
-        """Return tokens with ``cos(θ)`` for ``cθ`` and ``sin(θ)`` for ``sθ`` if these are read as short forms."""
+        """Return tokens with ``cos(θ)`` for ``cθ`` and ``sin(θ)`` for ``sθ``, if the text uses them as short forms."""
         short = [form for form in shorthands(tokens) if tokens[form.place].text not in self.declared.symbols]
         if not short:
             return tokens
@@ -137,9 +141,10 @@ class WordReader:
         return tokens
 
     def with_indices(self, tokens: list[Token]) -> list[Token]:
-        """Return tokens with one name omega_p in place of ω and p, if ``ωp`` is a whole left side.
+        """Return tokens in which a Greek letter and an index after it, such as ω and p of ``ωp``, are one name omega_p.
 
-        The same holds for ``ωi`` and ``ωf`` anywhere, if both occur. In the less usual reading they are products.
+        They are joined if ``ωp`` is the whole left side of an equation; also ``ωi`` and ``ωf`` anywhere, if both occur
+        (initial and final value). Where ``flips`` asks for the less usual meaning, they stay a product.
         """
         padded = [None, *tokens]
         for place in range(len(tokens) - 3, -1, -1):

@@ -24,7 +24,7 @@ __all__ = [
 DEEPEST_NESTING = 60
 ADDING = ("+", "-")
 MASS = "dm"
-"""The element of mass of a body."""
+"""Name of the element of mass in an integral over a body."""
 
 FACTOR_MARKS = ("(", "[", "√")
 """Characters that may start a factor directly after another factor, without a product sign: ``2(a + b)``, ``2√x``."""
@@ -34,7 +34,7 @@ USUAL_VECTORS = frozenset([*"abcdeuvwrpqnsFLHMNRT", "omega", "Omega", "alpha", "
 """Names that books usually give to vectors; between two of them, as in ``a x b``, a letter x may be the sign ×."""
 
 SHARED = ("R", "T", "N", "s", "sigma", "epsilon", "eps")
-"""Names of vectors that are as often numbers: a radius, a tension, a normal force, a length."""
+"""Names that books give to vectors and just as often to numbers: a radius, a tension, a normal force, a length."""
 
 
 @dataclass(frozen=True)
@@ -163,7 +163,7 @@ class Cursor(ABC):
         return doubt.key in self.flips
 
     def note(self, sentence: str) -> None:
-        """Append a sentence for the user to the notes, unless they have it."""
+        """Append a sentence for the user to the notes, unless it is among them already."""
         if sentence not in self.notes:
             self.notes.append(sentence)
 

@@ -35,7 +35,10 @@ DEFINED: Mapping[str, Callable[[Node], Node]] = {
     "arg": lambda x: Node("call", "atan2", (Node("call", "imaginary_part", (x,)), Node("call", "real_part", (x,)))),
     "acsch": lambda x: _log(sum_of([quotient(ONE, x), _root(sum_of([quotient(ONE, _square(x)), ONE]))])),
 }
-"""Function of one scalar -> the formula that it is, with the principal values of the inverses."""
+"""Name of a function -> a function from its argument x to a formula: ``coth`` -> cosh(x)/sinh(x).
+
+The formulas of the inverses give their principal values.
+"""
 
 INVERSES = {name: f"a{name}" for name in ("sin", "cos", "tan", "sinh", "cosh", "tanh", "coth", "sech", "csch")}
 """Function -> its inverse, which ``sin^-1 x`` usually means."""

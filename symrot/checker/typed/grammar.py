@@ -1,7 +1,8 @@
 """The grammar of claims: a parser by precedence, with tables for operators, functions and methods.
 
 SymPy syntax has one meaning. A formula as people type it, such as ``sin 2x`` or ``a/b c``, may be ambiguous. The parser
-chooses the usual meaning, unless ``flips`` asks for the other one, and records the ambiguity as a :class:`Doubt`.
+records each ambiguity as a :class:`Doubt` and chooses the usual meaning, or the other one if the key of the doubt is in
+its argument ``flips``.
 """
 
 import re
@@ -30,7 +31,7 @@ def _is_matrix_name(node: Node) -> bool:
 def _from_matrix(factors: Sequence[Node]) -> int:
     """Return the index in ``factors`` at which the left operand of a cross product starts.
 
-    It is the index of R in ``R a × b``, which means (R a) × b for a matrix R, and otherwise that of the last factor.
+    In ``R a × b``, which means (R a) × b for a matrix R, this is the index of R; otherwise that of the last factor.
     """
     return len(factors) - (2 if len(factors) > 1 and _is_matrix_name(factors[-2]) else 1)
 

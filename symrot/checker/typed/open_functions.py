@@ -68,10 +68,10 @@ class OpenFunctionsPart(Cursor):
         return Node("neg", None, (value,), value.span) if negative else value
 
     def open_call(self, function: str, token: Token, exponent: Node | None) -> tuple[Node, Node | None]:
-        """Parse the argument of a function, as in ``sin 2x``; return the call sin(2*x) and its exponent or None.
+        """Parse a function's argument without brackets, as in ``sin 2x``; return (call sin(2*x), its exponent or None).
 
-        ``exponent`` is the one before the argument, 2 in ``sin^2 x``. An exponent after the argument, in ``sin x^2``
-        as (sin x)^2, multiplies it.
+        ``exponent`` is the exponent that was read before the argument, 2 in ``sin^2 x``. If ``sin x^2`` is read as
+        (sin x)^2, the exponent returned is that 2, times ``exponent`` if there is one.
         """
         self.plain = True
         first = self.token()
@@ -212,7 +212,7 @@ class OpenFunctionsPart(Cursor):
         return (own.text, order, place + 1) if is_differentiated else ("", order, place)
 
     def derived(self, token: Token, operand: Node, variable: Node, order: int) -> Node:
-        """Return the derivative of ``operand`` by ``variable``, whose text starts with ``token``.
+        """Return the derivative of ``operand`` by ``variable``; ``token`` is the first token of the typed derivative.
 
         Raise InputError for an order below 1 or above ``MOST_DERIVATIVES``.
         """

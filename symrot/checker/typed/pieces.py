@@ -42,7 +42,7 @@ CONSTRUCTORS = {"hstack": "hstack", "eye": "eye", "diag": "diag"}
 
 
 ELEMENTS = (MASS, "dV", "dA", "ds", "dt")
-"""The elements of integrals over a body, by its mass, volume, area or length, and of an integral over time."""
+"""Names of the usual differentials in integrals: of mass, volume, area and length of a body, and of time."""
 
 MOST_DOTS = 4
 """The highest order of a derivative that is written with primes or dots."""
@@ -386,8 +386,9 @@ class PiecesPart(OpenFunctionsPart):
         return Node("neg", None, (node,), node.span) if negative else node
 
     def element_ahead(self, has_limits: bool) -> str:
-        """Return the element that ends the integral at the cursor: dm, dV or, after limits, dx. It is dm if there is
-        none.
+        """Return the differential that ends the integral at the cursor: dm, dV or, after limits, dx.
+
+        Return dm if the integral has no differential.
         """
         depth = inner = 0
         for before, token in pairwise(self.tokens[self.index - 1 :]):

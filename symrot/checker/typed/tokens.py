@@ -16,7 +16,7 @@ from symrot.latex.tokens import GREEK
 __all__ = ["GREEK_WORDS", "LETTERS", "LONGEST_NUMBER", "SIGNS", "Token", "tokens_of", "without_dots"]
 
 LONGEST_NUMBER = 200
-"""The largest number of characters in a number, raised or not; Python converts no number of more than 4300 digits."""
+"""The largest number of characters in a number, also in a superscript; Python converts at most 4300 digits."""
 
 SIGNS = ("==", "=", "!=", ">=", "<=", ">", "<")
 """The signs between the two sides of an equation or inequality."""
@@ -60,7 +60,10 @@ GREEK_WORDS = frozenset(LETTERS.values())
 _GREEK = "".join(LETTERS)
 _DOTS = {"\u0307": 1, "\u0308": 2, "\u20db": 3}
 _SIGNS_OVER = {"\u0302": "hat", "\u0303": "tilde", "\u0304": "bar", "\u0305": "bar"}
-"""Mark over a letter -> its name: a hat of a unit vector, a tilde of a skew matrix, a bar that makes another name."""
+"""Mark over a letter -> name of the mark.
+
+A hat marks a unit vector, a tilde a skew matrix. A letter with a bar is a name of its own: x̄ is x_bar.
+"""
 
 _OVER = {*_DOTS, *_SIGNS_OVER}
 _RAISED = dict(zip("⁰¹²³⁴⁵⁶⁷⁸⁹⁺⁻ᵀ", "0123456789+-T", strict=True))
@@ -241,9 +244,9 @@ def _pieces(text: str, at: int) -> Iterator[tuple[str, str, int]]:
 
 
 def _differential(text: str, at: int) -> Iterator[tuple[str, str, int]]:
-    """Yield (kind, text, end) of the tokens after a sign ``∂``, whose name gets a d in front: dT for ``∂T``.
+    """Yield (kind, text, end) of the tokens of a partial differential, without its sign: the name dT for ``∂T``.
 
-    Yield the name d for ``∂`` alone.
+    ``at`` is the position after the sign ``∂``. Yield the name d for ``∂`` alone.
     """
     name = _NAME.match(text, at)
     if text[at : at + 1] in LETTERS:

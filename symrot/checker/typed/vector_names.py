@@ -26,7 +26,10 @@ def names_alone(tokens: Sequence[Token], vectors: Collection[str]) -> Iterator[s
 
 
 def _is_cross(before: Token | None, token: Token, after: Token, factor: Token, vectors: Collection[str]) -> bool:
-    """Return whether ``token`` is an x that means a cross product, as in ``r x v``: of ``before`` and ``factor``."""
+    """Return whether ``token`` is a letter x that means the cross product of ``before`` and ``factor``: ``r x v``.
+
+    ``after`` is the token after the x. It is the factor itself, or in ``r x m v`` the mass before the factor.
+    """
     if token.text != "x" or not token.spaced or not after.spaced or before is None:
         return False
     # in r x m v the token after the x is the mass m, and the factor is v
@@ -95,7 +98,10 @@ def marked(tokens: Sequence[Token]) -> Iterator[str]:
 
 
 def dotted(tokens: Sequence[Token], vectors: Collection[str]) -> set[str]:
-    """Return the usual names of vectors at a dot beside one of ``vectors`` or beside a cross product: v in ``n·v``."""
+    """Return further names of vectors, found in scalar products: v in ``n·v`` if n is in ``vectors``; c in ``(a×b)·c``.
+
+    Only letters that books usually give to vectors, and g, are returned.
+    """
     names: set[str] = set()
     for place, dot in enumerate(tokens):
         if dot.text != "·" or not 0 < place < len(tokens) - 1:

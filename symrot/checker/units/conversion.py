@@ -65,13 +65,13 @@ ALIASES = {
     **dict.fromkeys(("meter", "meters", "metre", "metres"), "m"),
 }  # fmt: skip
 PRODUCTS = frozenset({"mg", "ms", "hp"})
-"""Units whose text is a product of quantities just as often: mg may be the weight m*g."""
+"""Units that may as well be a product of two quantities: mg is a milligram, or the weight m*g."""
 
 CERTAIN = frozenset({
     "kg", "mm", "cm", "km", "rad", "rpm", "kN", "kJ", "kW", "kPa", "MPa", "Hz", "lbf", "lbm", "slug", "MJ", "kWh",
     "MW", "mph",
 })  # fmt: skip
-"""Texts that are units even in a formula with letters, and never names of quantities."""
+"""Units whose text is never the name of a quantity; after a number they are units even in a formula with letters."""
 
 _UNIT = "|".join(sorted([*FACTORS, *ALIASES], key=lambda name: (-len(name), name)))
 _POWER = r"(?:(?:\^|\*\*)(?:\(-?\d{1,2}\)|-?\d{1,2}(?!\d))|[²³]|⁻[¹²³]|(?!\s*(?:\^|\*\*)))"
@@ -144,7 +144,7 @@ class UnitProduct:
         return f"1 {self.text} = {factor}{f'/{below}' if below != 1 else ''} {unit}".rstrip()
 
     def _is_angle(self) -> bool:
-        """Return whether the product is a unit of angle, such as deg, divided by units that are not."""
+        """Return whether the product starts with a unit of angle, to the power 1, and has no other: deg, deg/s, rpm."""
         first, *others = _PIECE.finditer(self.text)
         angular = [ALIASES.get(piece["unit"], piece["unit"]) in ANGULAR for piece in (first, *others)]
         return angular[0] and not first["power"] and not any(angular[1:])
@@ -175,7 +175,7 @@ class Measured:
 
 @dataclass(frozen=True)
 class _Interpretation:
-    """One interpretation of a text with units."""
+    """One way to read the units in a text where several are possible."""
 
     meanings: frozenset[str] = frozenset()  # the units that have their less usual meaning
     by_whole: bool = True  # whether ``a/2 m`` divides by ``2 m``
@@ -184,8 +184,8 @@ class _Interpretation:
 def measured_text(source: str) -> Measured | None:
     """Return a text with a name such as unit_1 in place of each unit or product of units.
 
-    Return None if the text has no units, if it has other names than one that is its left side, or if its one-letter
-    units are probably quantities, as m and g in ``T = 2 m g``.
+    Return None if the text has no units, if it has names besides units (one name as the left side is allowed), or if
+    its one-letter units are probably quantities, as m and g in ``T = 2 m g``.
 
     Raises
     ------
@@ -274,7 +274,9 @@ def _read(plain: str, way: _Interpretation) -> Measured | None:
 
 
 def numeric_end(source: str) -> tuple[str, str]:
-    """Split a chain of equations into formulas and a chain of numbers with units; ("", "") if it does not end so.
+    """Split a chain of equations into (formulas, numbers with units).
+
+    Return ("", "") if the last two sides are not both numbers with units.
 
     Examples
     --------

@@ -29,12 +29,13 @@ LARGEST = 1e205
 """Largest number that may define a motion, in its unit, so that all constants of the motion are finite doubles."""
 
 SMALLEST = 1e-205
-"""Smallest moment of inertia, kg m^2."""
+"""Smallest moment of inertia that may define a motion, kg m^2."""
 
 GRID = 2.0**-33
-"""The rounding of attitudes: each component is a sum hi + lo of two doubles, with hi the nearest double to it.
+"""Unit, in last bits of hi, to which lo is rounded in the components hi + lo of an attitude.
 
-lo is rounded to a multiple of GRID times the last bit of hi, so that batches arrive at the same doubles.
+hi is the double nearest to the component. Because of the rounding, a batch of motions gives the same doubles as single
+motions.
 """
 
 _BITS = 600  # 2^600 and its inverse lie inside these bounds

@@ -59,9 +59,9 @@ def _less_whole_turns(turns: dd.Pair) -> Floats:
 
 
 class Turning:
-    """A function from time to a multiple of the angle, modulo 1 revolution, by which a driven body has rotated.
+    """A function from time to ``factor`` times the angle by which a driven body has rotated, modulo 1 revolution.
 
-    The multiple, ``factor`` times the angle, is for instance half the angle, for the quaternion.
+    For the attitude quaternion, which depends on half the angle, ``factor`` is 1/2.
 
     Parameters
     ----------
@@ -150,10 +150,10 @@ class Turning:
         return np.array([self._exactly(time) for time in t.tolist()])
 
     def _integers(self, bits: int) -> tuple[int, int, int, int]:
-        """Return (final, rest, decay, ln 2) as integers with ``bits`` bits after the binary point, ln 2 with more.
+        """Return the constants (final, rest, decay, ln 2) as integers with ``bits`` bits after the binary point.
 
-        With damping, ``factor`` times the angle is final*t + rest*(1 - exp(-decay*t)) revolutions; without damping, it
-        is final*t + rest*t^2, where final is the initial rate.
+        With damping, ``factor`` times the angle of rotation is final*t + rest*(1 - exp(-decay*t)) revolutions. Without
+        damping it is final*t + rest*t^2. ln 2, for the exponential, has 16 bits more (``_GUARD``).
         """
         if bits not in self._scaled:
             from mpmath import mp

@@ -93,7 +93,7 @@ def functions() -> tuple[Any, Any]:
 
 
 class Constants:
-    """The constants of a body driven about one axis; a call with an initial state returns a motion's :class:`Loops`.
+    """The constants of a body driven about one axis; a call with an initial state returns the motion from this state.
 
     Parameters
     ----------
@@ -127,17 +127,19 @@ class Constants:
         self._turns: dict[bool, tuple[int, int, list[float]]] = {}
 
     def head(self, transverse: bool) -> list[float]:
-        """Return the first 8 numbers of the C struct `axial`: regime, time scale, across, first time, decay rates.
+        """Return the first 8 numbers of the C struct `axial`, which all motions of the body share.
 
-        ``transverse`` says whether the body also rotates across the driven axis; it is the struct's member `across`.
+        In order: 1 if the rotation about the driven axis is damped; the time scale 1; ``transverse`` (1 if the body
+        also rotates about an axis normal to the driven axis); the earliest time, s; two decay rates as sums hi + lo.
         """
         return [float(bool(self._decay)), 1.0, float(transverse), *self._head]
 
     def moving(self, rate: Fraction | float, transverse: bool) -> list[float]:
         """Return the 18 numbers of the C struct `axial` that depend on the initial rate about the driven axis, rad/s.
 
-        The first four are rates about this axis, the member `axial`. The others are the constants of an angle: half the
-        angle of rotation (member `half`) or, if the body also rotates across the axis (``transverse``), the angle by
+        The first four, the member `axial`, are the initial rate, the initial acceleration, the final rate, and the
+        initial minus the final rate. The others are the constants of an angle: half the angle of rotation (member
+        `half`) or, if the body also rotates about an axis normal to the driven axis (``transverse``), the angle by
         which the transverse angular velocity rotates in the body (member `lag`).
         """
         turn, bits, fixed = self._turns.get(transverse) or self._turning(transverse)
@@ -158,10 +160,10 @@ class Constants:
         ]  # fmt: skip
 
     def _turning(self, transverse: bool) -> tuple[int, int, list[float]]:
-        """Return (turn, bits, fixed) for the angle whose constants :meth:`moving` returns.
+        """Return constants (turn, bits, fixed) of half the angle of rotation or, if ``transverse``, of the angle lag.
 
         If the body rotates by 1 rad about the driven axis, the angle changes by ``turn/2**bits`` revolutions. ``fixed``
-        are its constants for C that do not depend on the initial state: 3 numbers, or 8 without damping.
+        are the numbers for C that do not depend on the initial state: 3, or 8 without damping.
         """
         # the angle is lag if transverse, otherwise half the angle of rotation
         turn, bits = _HALF

@@ -68,8 +68,9 @@ def rates_of_body(body: NDArray[np.uint64], omega: Floats) -> tuple[Floats, Floa
     """Return (rates, defects, doubtful) of the motions of one body from n angular velocities ``omega``, shape (n, 3).
 
     ``rates``, shape (n, 6), are the components along the principal axes: hi, lo of the first, then of the others.
-    ``defects``, shape (n, 2), are hi and lo of |L|^2 - 2 T I_mid, scaled as the module says. ``doubtful`` are the
-    indices of the motions for which the last digit of a number is uncertain. ``body`` comes from :func:`fixed_body`.
+    ``defects``, shape (n, 2), are hi and lo of |L|^2 - 2 T I_mid over (largest moment times largest rate)^2.
+    ``doubtful`` are the indices of the motions for which the last digit of a number is uncertain. ``body`` comes from
+    :func:`fixed_body`.
     """
     n = len(omega)
     rates, exact, doubtful = np.empty((n, 6)), np.empty((n, 8)), np.empty(n, np.uint8)
@@ -82,8 +83,8 @@ def rates_of_body(body: NDArray[np.uint64], omega: Floats) -> tuple[Floats, Floa
 def defects(moments: Floats, omega: Floats) -> tuple[Floats, Doubtful]:
     """Return (defects, doubtful) of n free bodies, from their principal moments and their rates about these axes.
 
-    ``defects``, shape (n, 2), are hi and lo of |L|^2 - 2 T I_mid, scaled as the module says. ``doubtful`` are the
-    indices of the bodies for which the last digit of this number is uncertain.
+    ``defects``, shape (n, 2), are hi and lo of |L|^2 - 2 T I_mid over (largest moment times largest rate)^2.
+    ``doubtful`` are the indices of the bodies for which the last digit of this number is uncertain.
     """
     n = len(omega)
     exact, doubtful = np.empty((n, 8)), np.empty(n, np.uint8)

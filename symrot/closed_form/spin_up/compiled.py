@@ -29,7 +29,11 @@ class _Functions(NamedTuple):
 
 
 def limits() -> tuple[float, float, float]:
-    """Return the constants NEAR, WIDE and MOST of :mod:`symrot.closed_form.spin_up.series`, as arguments for C."""
+    """Return (NEAR, WIDE, MOST) of :mod:`symrot.closed_form.spin_up.series`, as arguments for C.
+
+    NEAR and WIDE bound the scaled time and kappa from which on the asymptotic series are accurate; MOST is the largest
+    angle of rotation, rad, for double-double numbers.
+    """
     return spin_up_series.NEAR, spin_up_series.WIDE, spin_up_series.MOST
 
 
@@ -82,10 +86,10 @@ class Compiled:
         self.longest: float = constants[1] / constants[0]
 
     def _prepared(self, table: Floats | None) -> tuple[Any, int, Floats | None]:
-        """Return (constants, address, table): the motion's constants, computed by C, a ctypes array and its address.
+        """Return (constants, address, table): the motion's constants that C computes, as a ctypes array; its address.
 
-        ``table`` is the argument: None, or an array of ``TABLE`` doubles that C fills with the Taylor polynomials for
-        samples near resonance.
+        ``table`` is the argument itself: None, or an array of ``TABLE`` doubles, which C fills with the Taylor
+        polynomials for samples near resonance (axial rate Omega = 0).
         """
         bound = functions()
         constants = bound.record()

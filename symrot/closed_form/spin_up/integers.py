@@ -137,10 +137,11 @@ class Integers:
         return product(leaving, conjugate(self._near.quaternion(Fraction(side * int(NEAR)))))
 
     def _begin(self, side: int) -> tuple[Fraction, Fraction, Quaternion]:
-        """Return (time, Omega, rotation) where the asymptotic series on one side of resonance begin to be used.
+        """Return (time, Omega, rotation) from which the asymptotic series before or after resonance are applied.
 
-        ``side`` is -1 before resonance and 1 after it. Omega is the axial rate at that time, and the rotation is from
-        the start to then. If the motion starts on this side, they are 0, the initial rate, and the identity.
+        ``side`` is -1 before resonance (axial rate Omega < 0) and 1 after it. Omega is the axial rate at this time, and
+        the rotation that of the body from the start to this time. If the motion starts on this side of resonance, they
+        are 0, the initial axial rate, and the identity.
         """
         if self._side(self._start) == side:
             return Fraction(0), self._start, ONE
@@ -151,8 +152,8 @@ class Integers:
     def _constants(self, near: bool) -> list[float]:
         """Return the constants with which NumPy computes samples, in the order of the C struct in :file:`spin_up.h`.
 
-        ``near`` says whether some samples lie near resonance, or on its other side; otherwise the constants that only
-        these need are zero.
+        ``near`` says whether some samples lie near resonance (axial rate Omega = 0), or beyond it as seen from the
+        start. If not, the constants that only these samples need are zero.
         """
         sweep, back, wide = self._sweep, conjugate(self._axes), self._sweep.series.wide
         turns = [x / (4 * number.PI) for x in self._turn]
@@ -188,7 +189,7 @@ class Integers:
         """Return whether one asymptotic series certainly gives the attitude at all times from ``first`` to ``last``.
 
         It does if kappa = W/sqrt(s) is WIDE or more (W the transverse angular velocity, s the rate at which the axial
-        rate grows), or if all these times are far from resonance, on the same side of it.
+        rate Omega grows), or if Omega is far from 0 (resonance) at all these times, always with the same sign.
         """
         start, s, scale = float(self._start), float(self._sweep.s), float(self._scale)
         ends, edge = (start + s * first * scale, start + s * last * scale), float(self._edge)

@@ -1,12 +1,13 @@
 """A symmetric body under a constant torque about its axis, at any time, in closed form.
 
-The transverse angular velocity, normal to the axis, has the constant length W. In axes that rotate with it, the body
-rotates at ``(W, 0, Omega)``. The axial rate Omega grows at the constant sweep rate s; at resonance it is zero. Attitude
-components are parabolic cylinder functions of the scaled time ``x = Omega/sqrt(s)`` with the parameter
-``kappa = W/sqrt(s)``: asymptotic series far from resonance, Taylor series near it.
+The transverse angular velocity, normal to the axis, has the constant length W. In axes that rotate with it (the
+rotating axes), the angular velocity of the body is ``(W, 0, Omega)``. The axial rate Omega grows at the constant rate s
+(the sweep rate); the moment at which Omega is zero is called resonance. The components of the attitude are parabolic
+cylinder functions of the scaled time ``x = Omega/sqrt(s)`` with the parameter ``kappa = W/sqrt(s)``. They are computed
+by asymptotic series far from resonance and by Taylor series near it.
 
-The formulas are in :file:`spin_up.h`. Source: Zener, Proc. R. Soc. A 137 (1932) 696, for the same equation of a
-two-level system. Proof: ``derivations/driven_rotation.md``.
+The formulas are in :file:`spin_up.h`. Source: Zener, Proc. R. Soc. A 137 (1932) 696, who solves the same equation for a
+quantum system with two states. Proof: ``derivations/driven_rotation.md``.
 """
 
 from collections.abc import Callable, Sequence

@@ -78,11 +78,11 @@ def _polynomial(coefficients: Floats, y: float) -> float:
 
 
 class Sweep:
-    """The rotation of a driven symmetric body far from resonance.
+    """The rotation of a driven symmetric body far from resonance (Omega = 0).
 
     ``across`` is W, the constant length of the transverse angular velocity, rad/s; ``s`` is the rate, rad/s^2, at which
-    Omega, the axial rate in the axes that rotate with the transverse angular velocity, grows. ``series`` are the
-    asymptotic series for kappa^2 = W^2/s.
+    Omega, the axial rate in the axes that rotate with the transverse angular velocity, grows. ``series`` gives the axis
+    and the angle of the rotation; it depends on kappa^2 = W^2/s alone.
     """
 
     def __init__(self, across: Fraction, s: Fraction, series: Series) -> None:
@@ -91,14 +91,17 @@ class Sweep:
         self.unit = self._square + (0 if series.wide else Fraction(NEAR) ** 2 * s)
 
     def speed(self, omega: Fraction) -> Fraction:
-        """Return the angular speed S = sqrt(omega^2 + across^2), rad/s, in the rotating axes at the axial rate."""
+        """Return the angular speed S = sqrt(omega^2 + W^2), rad/s, of the body when the axial rate is ``omega``.
+
+        W is the length of the transverse angular velocity; the speed is that in axes that rotate with this velocity.
+        """
         return number.sqrt(rounded(omega * omega + self._square))
 
     def _direction(self, omega: Fraction) -> tuple[float, float, float]:
-        """Return (across/S, omega/S, y) when the axial rate is ``omega``, where S is the speed.
+        """Return (W/S, omega/S, y) when the axial rate is ``omega``, with the angular speed S = sqrt(omega^2 + W^2).
 
-        The first two are the direction (across, 0, omega)/S of the angular velocity; y is the variable of the
-        polynomials in ``self.series``.
+        W is the length of the transverse angular velocity, so that the angular velocity has the direction
+        (W, 0, omega)/S. y is the variable of the polynomials in ``self.series``.
         """
         # y = unit/S^2
         speed = self.speed(omega)
@@ -113,9 +116,10 @@ class Sweep:
         return cosine * _polynomial(self.series.e, y)
 
     def axes(self, omega: Fraction) -> Quaternion:
-        """Return the rotation that maps the third axis to n, the vector about which the body rotates.
+        """Return the rotation that maps the third axis to n, when the axial rate is ``omega``.
 
-        n is near the direction of the angular velocity when the axial rate is ``omega``; the asymptotic series give it.
+        n is a vector, fixed in space, near the direction of the angular velocity: the motion is a rotation about n. Its
+        components in the rotating axes come from the polynomials in ``self.series``.
         """
         sine, cosine, y = self._direction(omega)
         g, c = _polynomial(self.series.g, y), _polynomial(self.series.c, y)

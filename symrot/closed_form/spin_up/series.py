@@ -1,7 +1,9 @@
 """Asymptotic series for a driven symmetric body far from resonance, in inverse powers of its angular velocity.
 
-The angular velocity in the body is ``(kappa, 0, x)``, where x is the scaled time. A vector n, fixed in space, lies near
-the axis of rotation. With ``r^2 = x^2 + kappa^2`` and ``v = 1/r^2``, the components of n in the body are
+In axes that rotate with the transverse angular velocity W, the angular velocity is ``(W, 0, Omega)``. The axial rate
+Omega grows at the constant rate s and is zero at resonance. Divided by sqrt(s), the angular velocity is
+``(kappa, 0, x)``; x is also the time after resonance in units of 1/sqrt(s). A vector n, fixed in space, lies near the
+axis of rotation. With ``r^2 = x^2 + kappa^2`` and ``v = 1/r^2``, the components of n in the rotating axes are
 
     n1 = (kappa/r) a(v),  n2 = (kappa/r) v c(v),  n3 = (x/r) b(v),  b - a = -v^2 g(v).
 
@@ -23,9 +25,9 @@ from symrot.closed_form.build import Floats
 __all__ = ["DEGREE", "MOST", "NEAR", "WIDE", "Series", "series"]
 
 NEAR = 10.0
-"""Scaled time x = Omega/sqrt(s) from which on the asymptotic series are accurate, whatever kappa is.
+"""Scaled time x = Omega/sqrt(s) from which on the asymptotic series are accurate for every transverse angular velocity.
 
-Omega is the axial rate, zero at resonance, and s the rate at which it grows.
+Omega is the axial rate, which is zero at resonance, and s the rate at which Omega grows.
 """
 
 WIDE = 9.0
@@ -35,10 +37,10 @@ W is the transverse angular velocity, and s the rate at which the axial rate gro
 """
 
 MOST = 1e13
-"""Angle of rotation, rad, above which sums of two doubles have too few digits for it."""
+"""Largest angle of rotation, rad, that is computed in sums of two doubles; they have too few digits for larger ones."""
 
 DEGREE = 12
-"""Degree of the polynomials in y that replace the asymptotic series for the vector n and the angle delta."""
+"""Degree of the polynomials that replace the asymptotic series (see :class:`Series`)."""
 
 _ORDERS = 14  # number of powers of v^2
 _SMALL = 0.2  # kappa^2/radius2: below it the angle is counted from infinity
@@ -46,10 +48,11 @@ _TERMS = 32  # powers of kappa^2 v that are used where kappa^2 v <= _SMALL
 
 
 class Series(NamedTuple):
-    """Three polynomials in y = radius2/r^2, as coefficients, lowest power first, in place of the asymptotic series.
+    """Three polynomials in y in place of the asymptotic series, as coefficients, lowest power first.
 
-    ``g`` and ``c`` give the components, normal to the angular velocity (kappa, 0, x), of the vector n about which the
-    body rotates; ``e`` gives the angle delta. The module defines these functions, r and radius2.
+    The body rotates about a vector n, fixed in space and near the direction of the angular velocity (kappa, 0, x).
+    ``g`` and ``c`` give the components of n normal to the angular velocity; ``e`` gives delta, the angle of rotation
+    minus the integral of r = sqrt(kappa^2 + x^2). y is radius2/r^2; radius2 is the smallest r^2 for which they hold.
     """
 
     # whether kappa is above WIDE: the series are then accurate at every x, otherwise for x above NEAR
@@ -68,9 +71,10 @@ def _nodes() -> tuple[Floats, Floats]:
 
 
 def _first(share: float, v: float) -> Floats:
-    """Return the coefficients of a(v) as a polynomial in y = radius2 v, where (kappa/r) a is the first component of n.
+    """Return the coefficients of the polynomial a in y = radius2/r^2, where (kappa/r) a is the first component of n.
 
-    ``share`` is kappa^2/radius2, and ``v`` is 1/radius2, the value of v at y = 1.
+    n is the vector, fixed in space, about which the body rotates, and r^2 = kappa^2 + x^2 (see :class:`Series`).
+    ``share`` is kappa^2/radius2, and ``v`` is 1/radius2.
     """
     # n' = n x (kappa, 0, x) gives c = -(a + 2 v a'), b - a = -v^2 g with g = 3 c + 2 v c', and 2 (1 - kappa^2 v) b' =
     # kappa^2 (b + c), so that each coefficient follows from the previous ones
@@ -90,10 +94,10 @@ def _first(share: float, v: float) -> Floats:
 
 
 def _excess(share: float, v: float, h: Floats) -> Floats:
-    """Return e at the values of y in :func:`_nodes`: delta = (x/r) e is the excess of the angle of rotation, rad.
+    """Return e at the values of y in :func:`_nodes`: (x/r) e is delta, the angle of rotation minus the integral of r.
 
-    ``share`` is kappa^2/radius2, and ``v`` is 1/radius2. ``h`` are the coefficients of the polynomial in y with
-    ``d delta/dx = kappa^2 v^(5/2) h``, where v is here 1/r^2.
+    ``share`` is kappa^2/radius2, and ``v`` is 1/radius2. ``h`` are the coefficients of the polynomial in
+    y = radius2/r^2 with ``d delta/dx = kappa^2 h/r^5``, where r^2 = kappa^2 + x^2.
     """
     powers = _nodes()[1]
     if share >= _SMALL:  # from x = 0
@@ -109,9 +113,10 @@ def _excess(share: float, v: float, h: Floats) -> Floats:
 
 
 def series(kappa2: float, inverse: float) -> Series:
-    """Return the polynomials that replace the asymptotic series for one value of kappa = W/sqrt(s).
+    """Return the polynomials that replace the asymptotic series of the module for one value of kappa = W/sqrt(s).
 
-    ``kappa2`` is kappa^2, and ``inverse`` is 1/kappa^2; one of them may be too small for a double, and is then 0.
+    W is the transverse angular velocity, and s the rate at which the axial rate grows. ``kappa2`` is kappa^2, and
+    ``inverse`` is 1/kappa^2; one of them may be too small for a double, and is then 0.
     """
     wide = kappa2 >= WIDE * WIDE
     radius2 = kappa2 if wide else NEAR * NEAR + kappa2

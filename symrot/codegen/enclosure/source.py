@@ -42,7 +42,7 @@ def enclosure_definitions(enclosure: Enclosure | None, order: int, edges: Sequen
     Parameters
     ----------
     enclosure : Enclosure or None
-        The terms of the rates in which a pulse may hide; None if there are no such terms.
+        The terms of the rates in which a step may miss a pulse, such as exp(-(t - 5)^2); None if there are none.
     order : int
         The order N of the Taylor polynomials that approximate the states in a step.
     edges : sequence of int
@@ -115,9 +115,10 @@ def rounding_source(program: Program) -> str:
 
 
 def _rounded_disc(system: Recurrences, number: int, places: Mapping[str, str], linear: Mapping[int, bool]) -> str:
-    """Return the C expression of a disc around the computed value of series ``number`` that contains the exact value.
+    """Return the C expression of a disc around the computed value of a quantity that contains the exact value.
 
-    ``linear`` are the series that depend on t alone, each with whether it is linear in t.
+    ``number`` is the index of the quantity in ``system.series``. ``linear`` has the indices of the quantities that
+    depend on t alone, each with whether it is linear in t.
     """
     # the low part of the time is added to sums, and to the phases of the rule clock
     series, disc = system.series[number], _disc(system, number, places)
@@ -139,7 +140,10 @@ def _rounded_disc(system: Recurrences, number: int, places: Mapping[str, str], l
 
 
 def _radii(enclosure: Enclosure, places: Mapping[str, str]) -> list[str]:
-    """Return the C statements that set the deviation of each rate from the radii of its terms' discs."""
+    """Return C statements that compute how far each rate may deviate from a constant, and set ``deviation`` in C to it.
+
+    For each rate it is the sum of its terms' absolute weights times the radii of the discs that contain their values.
+    """
     return [
         f"deviation[{state}] = "
         + (" + ".join(f"{_size(weight, places)}d{operand}.r" for weight, operand in own) or "0.0")
@@ -157,11 +161,11 @@ def _constant(node: Node, places: Mapping[str, str]) -> str:
 
 
 def _disc(system: Recurrences, number: int, places: Mapping[str, str]) -> str:
-    """Return the C expression of a disc that contains the values of the quantity with the Taylor series ``number``.
+    """Return the C expression of a disc that contains the values of one quantity near the start of a step.
 
-    The values are those at complex times within ``reach`` of t, for states within ``radius`` of y. For the square of
-    series 2, whose disc is d2, the expression is ``symrot_disc_square(d2)``. ``places`` maps the name of a parameter to
-    C, such as ``p[1]``.
+    ``number`` is the index of the quantity in ``system.series``. The values are those at complex times within ``reach``
+    of t, for states within ``radius`` of y, all variables of the C code. For the square of quantity 2, whose disc is
+    d2, the expression is ``symrot_disc_square(d2)``. ``places`` maps the name of a parameter to C, such as ``p[1]``.
     """
     series = system.series[number]
     own = [f"d{operand}" for operand in value_operands(series)]

@@ -36,7 +36,10 @@ class Enclosure(NamedTuple):
 
 
 def value_operands(series: Series) -> tuple[int, ...]:
-    """Return the operands (indices of series) that determine the value of a series: u alone for sin(u)."""
+    """Return the operands (indices of series) from which the value of a series is computed: u for sin(u).
+
+    Left out are operands that only the higher Taylor coefficients of the series need, such as cos(u).
+    """
     # the first operands of a driven series determine only its later Taylor coefficients
     first = {"driven": 2, "primitive": 3}.get(series.rule, 0)
     return () if series.rule == "clock" else series.operands[first:]
@@ -66,7 +69,7 @@ def enclosure(system: Recurrences) -> Enclosure | None:
 
 
 def _needed(system: Recurrences, terms: Sequence[Sequence[tuple[Node, int]]]) -> tuple[int, ...]:
-    """Return the series of the terms, with their operands and the operands of these, in order of evaluation."""
+    """Return the indices of all series that the evaluation of the terms needs, in the order of evaluation."""
     needed: set[int] = set()
     waiting = [operand for own in terms for _, operand in own]
     while waiting:
@@ -80,7 +83,7 @@ def _needed(system: Recurrences, terms: Sequence[Sequence[tuple[Node, int]]]) ->
 def _degree(series: Series, degrees: list[int]) -> int:
     """Return the degree of a series as a polynomial in the states, t, sin(a t + b) and cos(a t + b).
 
-    The degree is BEYOND or more if a pulse may hide in the series, as in exp(-t^2).
+    Return BEYOND or more for a polynomial of high degree and for a quantity that is no such polynomial, as exp(-t^2).
     """
     # degrees[i]: the degree of series i
     if series.rule in ("state", "time"):
@@ -93,7 +96,7 @@ def _degree(series: Series, degrees: list[int]) -> int:
 
 
 def functions_of_time(enclosure: Enclosure) -> dict[int, bool]:
-    """Return the evaluated series that depend on t and on no state, each with whether it is linear in t."""
+    """Return {index of a series: whether it is linear in t} for the series of ``enclosure`` that depend on t alone."""
     linear: dict[int, bool] = {}
     for i in enclosure.series:
         series = enclosure.system.series[i]

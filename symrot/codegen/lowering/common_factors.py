@@ -81,9 +81,10 @@ class Share:
             yield "add", ((a, 1), (b, s * r))
 
     def _is_preferred(self, pair: Any) -> bool:
-        """Return whether ``pair`` is extracted before equally frequent pairs: any sum, or a product without numbers.
+        """Return whether ``pair`` becomes a shared node before other pairs that are equally frequent.
 
-        ``("mul", (a, b), ())``, for instance, is a product; its factors a and b are indices of nodes.
+        True for a sum, and for a product or quotient without numbers. A product is ``("mul", (a, b), ())``, a quotient
+        ``("mul", (a,), (b,))``, where a and b are indices of nodes.
         """
         return pair[0] == "add" or not any(self.nodes[i][0] == "num" for part in pair[1:] for i in part)
 

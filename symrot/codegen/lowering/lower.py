@@ -29,10 +29,10 @@ ANONYMOUS = "#"
 
 @dataclass(frozen=True)
 class Lowered:
-    """A program, and the formulas of its parameters (constants of a motion), such as ``("p0", (A - C)/A)``."""
+    """A straight-line program made by :func:`lower`, and the formulas of its parameters, the constants of a motion."""
 
     program: Program
-    # component k of the argument p: its name, and its formula of physical constants
+    # pairs (name, formula of physical constants), such as ("p0", (A - C)/A), one for each component of the argument p
     parameters: tuple[tuple[str, Node], ...]
 
 
@@ -152,9 +152,9 @@ def _lowered(
     signature: Signature, outputs: Sequence[tuple[str, Expr]], definitions: Sequence[tuple[Symbol, Expr]],
     parameter_argument: str, flat: bool,
 ) -> tuple[Lowered, list[str]]:  # fmt: skip
-    """Return (lowered, anonymous): what :func:`lower` returns, and the temporaries that still need descriptive names.
+    """Return the program with its parameters, and the preliminary names, such as ``#2``, of temporaries in it.
 
-    ``flat`` turns ``a + (b + c)`` into ``a + b + c`` first.
+    :func:`lower` replaces these names by descriptive ones. ``flat`` turns ``a + (b + c)`` into ``a + b + c`` first.
     """
     inputs = [name for a in signature.arguments if a.role == "in" for name, *_ in a.components]
     held = {symbol for _, expr in [*outputs, *definitions] for symbol in expr.free_symbols}

@@ -1,4 +1,4 @@
-"""Auxiliary states ("companions") of a Taylor series: quantities of the attitude that have equations of their own.
+"""Auxiliary states ("companions") for Taylor series: functions of the attitude that are integrated like states.
 
 The components of a fixed direction seen from the body, ``gamma = R(q)^T e``, contain products of q0..q3, which take
 convolutions. But ``gamma' = gamma x omega``, so gamma can be integrated like a state. At the start of every step it is
@@ -20,8 +20,11 @@ QUATERNION = ("q0", "q1", "q2", "q3")
 MOST_COMPANIONS, MOST_TERMS = 9, 200  # nine are the companions of three directions; more do not save time
 
 
-class _Open(Exception):
-    """Raised if a system cannot have auxiliary states; :func:`with_companions` then returns the system unchanged."""
+class _NotClosed(Exception):
+    """The exception for a Taylor system that gets no auxiliary states, for example because it would need too many.
+
+    :func:`with_companions` then returns the system unchanged.
+    """
 
 
 class _Term(NamedTuple):
@@ -42,19 +45,19 @@ def with_companions(system: Recurrences) -> Recurrences:
         return system
     try:
         return _Closure(system).result()
-    except _Open:
+    except _NotClosed:
         return system
 
 
 def _times(a: Polynomial, b: Polynomial) -> Polynomial:
-    """Return the product of two polynomials; raise _Open if multiplying it out gives too many terms."""
+    """Return the product of two polynomials; raise _NotClosed if multiplying it out gives too many terms."""
     if len(a.terms) * len(b.terms) > MOST_TERMS and len(products_of_monomials(a, b)) > MOST_TERMS:
-        raise _Open
+        raise _NotClosed
     return a * b
 
 
 class _Closure:
-    """A Taylor system and the auxiliary states that replace functions of the attitude in its rates."""
+    """A Taylor system with the auxiliary states (additional states) that replace polynomials in q0..q3 in its rates."""
 
     def __init__(self, system: Recurrences) -> None:
         self.system, self.series = system, system.series
@@ -65,7 +68,7 @@ class _Closure:
         self.norm = Polynomial({((q, 2),): Fraction(1) for q in self.attitude})
         # the identities hold for a unit quaternion, so its norm must be constant along the motion
         if self.derivative(self.norm):
-            raise _Open
+            raise _NotClosed
         self.companions: list[Polynomial] = []
         self.known: dict[frozenset[tuple[Monomial, Fraction]], tuple[int, Fraction]] = {}
         self.replaced: dict[int, list[_Term]] = {}  # series -> its terms in companions
@@ -131,9 +134,10 @@ class _Closure:
         return total
 
     def rate(self, variable: int) -> Polynomial:
-        """Return the time derivative along the motion of variable number ``variable`` of the polynomials.
+        """Return the time derivative of a variable of the polynomials, which is a polynomial too.
 
-        The derivative is a polynomial too; :class:`_Open` is raised if it is not.
+        ``variable`` is the index of a state, a function of time or a constant in ``self.variables``. Raise
+        :class:`_NotClosed` if the derivative is no polynomial, such as a quotient, or has too many terms.
         """
         kind, what = self.variables[variable]
         if kind == "constant":
@@ -145,7 +149,7 @@ class _Closure:
             return _times(partner, constant(s.sign))
         polynomial = self.sum(self.system.rates[what])
         if polynomial is None:
-            raise _Open
+            raise _NotClosed
         return polynomial
 
     def derivative(self, form: Polynomial) -> Polynomial:
@@ -192,7 +196,7 @@ class _Closure:
                 if kind == "state":
                     # the rate of an auxiliary state must be a sum of constant * (state or 1) * auxiliary state
                     if state is not None or power > 1:
-                        raise _Open
+                        raise _NotClosed
                     state = what
                 for _ in range(power if kind == "constant" else 0):
                     constant = what if constant == ONE else ("*", constant, what)
@@ -202,15 +206,16 @@ class _Closure:
     # -------------------------------------------------------------------------------------------- closing
 
     def adjoin(self, inner: Polynomial) -> tuple[int | None, Fraction, Fraction]:
-        """Return (index, factor, number) such that ``inner`` is ``factor*state + number`` with an auxiliary state.
+        """Return (index, factor, number) such that the polynomial ``inner`` is ``factor*state + number``.
 
-        The index is that of the auxiliary state, which is added if it is new; it is None if ``inner`` is a number.
+        The index is that of the auxiliary state in this formula, which is added if it is new; the index is None if
+        ``inner`` is a number.
         """
         # polynomials that differ only by the identity q0^2 + q1^2 + q2^2 + q3^2 = 1 must give the same state
         degrees = {self.degree(monomial) for monomial in inner.terms}
         top = max(degrees)
         if any((top - degree) % 2 for degree in degrees):
-            raise _Open
+            raise _NotClosed
         # terms are multiplied by the squared norm until their degrees are equal: q0^2 + 1 becomes 2 q0^2 + q1^2 + q2^2
         # + q3^2
         whole = Polynomial({})
@@ -232,7 +237,7 @@ class _Closure:
         key = frozenset((monomial, x / lead) for monomial, x in whole.terms.items())
         if key not in self.known:
             if len(self.companions) == MOST_COMPANIONS:
-                raise _Open
+                raise _NotClosed
             self.known[key] = len(self.companions), lead
             self.companions.append(inner)
         index, own = self.known[key]
@@ -246,7 +251,10 @@ class _Closure:
         return result
 
     def seek(self, i: int) -> None:
-        """Replace the polynomials of the attitude in series ``i``, and in its operands, by auxiliary states."""
+        """Make polynomials in q0..q3 that occur in series ``i`` or its operands auxiliary states (additional states).
+
+        The series stays as it is; ``replaced`` and ``parts`` note what is to be replaced.
+        """
         s = self.series[i]
         if i in self.replaced or s.rule not in ("sum", "product"):
             return
@@ -259,7 +267,10 @@ class _Closure:
                 self.seek(operand)
 
     def seek_in(self, s: Series) -> None:
-        """Replace polynomials of the attitude in ``s``, a sum of series, by auxiliary states."""
+        """Make polynomials in q0..q3 that occur in ``s``, a sum of series, auxiliary states (additional states).
+
+        The sum stays as it is; ``replaced`` and ``parts`` note what is to be replaced.
+        """
         # products of components of the attitude are replaced together: q1 q3 + q0 q2 in q1 q3 + q0 q2 + t
         alone = {
             i for i in s.operands if self.series[i].rule == "product" and self.of_attitude(self.polynomial(i))
@@ -344,7 +355,7 @@ def _rebuilt(closure: _Closure, rates: list[list[_Term]]) -> Recurrences:
     }  # fmt: skip
 
     def left(s: Series) -> list[int]:
-        """Return the operands of the sum ``s`` that no auxiliary state replaces."""
+        """Return the indices of the operands that ``s`` keeps: all but those that auxiliary states replace."""
         return [i for i in s.operands if i not in closure.parts.get(s, (set(),))[0]]
 
     needed: set[int] = set()
@@ -393,7 +404,7 @@ def _rebuilt(closure: _Closure, rates: list[list[_Term]]) -> Recurrences:
         operands = []
         for term in terms:
             if term.companion is None and term.state is None:
-                raise _Open  # a companion with zero rate would be a constant
+                raise _NotClosed  # a companion with zero rate would be a constant
             both = (term.state, None if term.companion is None else count + term.companion)
             pair = [own for own in both if own is not None]
             if len(pair) == 2 and tuple(pair) not in products:

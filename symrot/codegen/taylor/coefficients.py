@@ -16,7 +16,7 @@ __all__ = ["coefficients"]
 
 
 class _Run(NamedTuple):
-    """One computation of Taylor coefficients, with one kind of number."""
+    """The data of one computation of Taylor coefficients with one kind of number, such as Fraction."""
 
     constant: Callable[[Node], Any]
     functions: Mapping[str, Callable[..., Any]]
@@ -130,4 +130,4 @@ _RULES: dict[str, Callable[[_Run, Series, int, list[Any]], Any]] = {
     "primitive": _primitive_rule,
     "clock": _clock_rule,
 }
-"""For each rule, the function that computes coefficient n of a series."""
+"""Name of a recurrence rule, such as "product" -> function that computes coefficient n of a series by this rule."""

@@ -92,11 +92,10 @@ def multiplications(program: Program, order: int) -> int:
 
 
 class _Jet:
-    """Writes the C function that computes the Taylor coefficients of all states of one system, number by number.
+    """Writes the C function that computes the Taylor coefficients of all states: coefficients 0, then 1, and so on.
 
-    Coefficient 0 has the ``stage`` ``"first"``, coefficient 1 ``"second"``, and all others ``"later"``. From n = 2 on,
-    a C loop first adds up the inner terms (k = 1 to n - 1) of the convolutions of slot i, in the C variable ``a{i}``
-    for even n and ``b{i}`` for odd n. The argument ``sums`` of methods is this letter, a or b.
+    A slot is a C variable that sums up several convolutions ``sum(u[k] v[n-k])``. From n = 2 on, a C loop first adds up
+    the terms k = 1 to n - 1 of slot i, in the C variable ``a{i}`` for even n and ``b{i}`` for odd n.
     """
 
     def __init__(self, system: Recurrences) -> None:
@@ -166,7 +165,8 @@ class _Jet:
     def slot(self, number: int, stage: str, sums: str) -> str:
         """Return the C expression for coefficient n of slot ``number``, a sum of convolutions ``sum(u[k] v[n-k])``.
 
-        ``stage`` and ``sums`` follow from n, as the class says.
+        ``stage`` is "first" for n = 0, "second" for n = 1, else "later". ``sums`` is "a" for even n, "b" for odd n: the
+        C variable ``a{number}`` or ``b{number}`` has the terms k = 1 to n - 1.
         """
         # the C variable such as a3 holds the terms k = 1..n-1; terms with coefficients n are added here
         older = f"{sums}{number}" if stage == "later" else ""
@@ -184,7 +184,10 @@ class _Jet:
         return f"V_ADD({older}, {newer})" if older and newer else older or newer
 
     def sum(self, s: Series, first: bool, factor: str = "") -> str:
-        """Return the C expression of the sum ``s`` of weighted series, times ``factor`` if it is not empty."""
+        """Return the C expression for coefficient n of the sum ``s`` of weighted series, times ``factor`` (C text).
+
+        ``first`` says whether n is 0; an empty ``factor`` stands for 1.
+        """
         value = ""
         *weights, constant = s.weights
         if first and constant is not None and constant != ZERO:  # coefficient 0
@@ -219,9 +222,9 @@ class _Jet:
     # -------------------------------------------------------------------------------------------- series
 
     def coefficient(self, i: int, n: str, stage: str, sums: str) -> list[str]:
-        """Return the C statements that set the variable ``v{i}`` to coefficient number ``n`` (C text) of series ``i``.
+        """Return the C statements that set the variable ``v{i}`` to coefficient ``n`` (C text) of series ``i``.
 
-        ``stage`` and ``sums`` follow from n, as the class says.
+        ``stage`` and ``sums`` are as for :meth:`slot`.
         """
         s, name = self.series[i], f"v{i}"
         if s.rule == "sum":
@@ -234,7 +237,7 @@ class _Jet:
             return [f"{name} = V_MUL(v{s.operands[0]}, V_ALL({factor}));"]
         if s.rule == "clock":
             return self._clock_start(i, s) if stage == "first" else self._clock(s, name, n)
-        # sums: the first letter, a or b, of the C variables with the sums over earlier coefficients
+
         total = self.slot(self.slot_of[i][1], stage, sums)
         if s.rule == "product":
             return [f"{name} = {total};"]
@@ -294,9 +297,10 @@ class _Jet:
     # -------------------------------------------------------------------------------------------- orders
 
     def order(self, n: str, stage: str, sums: str) -> list[str]:
-        """Return the C statements that compute coefficient number ``n`` of all series, then n + 1 of the states.
+        """Return the C statements that compute coefficient ``n`` of all series, then coefficient n + 1 of the states.
 
-        ``n`` is C text: ``"0"``, ``"1"``, ``"n"`` or ``"m"``; ``stage`` and ``sums`` follow from it, as the class says.
+        ``n`` is C text: ``"0"``, ``"1"``, ``"n"`` (even) or ``"m"`` (n + 1). ``stage`` and ``sums`` are as for
+        :meth:`slot`.
         """
         lines: list[str] = []
         made: set[int] = set()
@@ -331,7 +335,7 @@ class _Jet:
         return sorted({s.operands[0] for s in self.series if s.rule == "clock"})
 
     def loops(self) -> list[str]:
-        """Return the C loops that add up the inner terms of the convolutions for two coefficients: n (even) and n + 1.
+        """Return the C loops that add up terms of all convolutions for two coefficients: n (even) and n + 1.
 
         They set the C variable ``a{i}`` to the terms k = 1 to n - 1 of slot i for coefficient n, and ``b{i}`` to those
         for coefficient n + 1 that contain no coefficient n, which is still unknown.
@@ -358,7 +362,10 @@ class _Jet:
         return groups
 
     def _load(self, group: Sequence[int]) -> int:
-        """Return the number of registers that a C loop needs to add up the convolutions of the slots ``group``."""
+        """Return the number of registers that a C loop needs for ``group``, a list of indices of slots.
+
+        A slot is a C variable that sums up convolutions.
+        """
         terms = [c for i in group for _, c in self.slots[i].terms]
         # two sums of each slot, the values of each series u for two k, and one value of each series v
         return 2 * len(group) + 2 * len({c.a for c in terms}) + len({c.b for c in terms})
@@ -406,9 +413,9 @@ class _Jet:
         return [*lines, "}"]
 
     def completed_sums(self) -> list[str]:
-        """Return the C statements that add the last inner terms for coefficient n + 1 to the C variables ``b{i}``.
+        """Return the C statements that complete the C variables ``b{i}``, the sums for coefficient n + 1 of slot i.
 
-        These terms contain coefficient n of a series, which was unknown during the loops: u[1] v[n] and u[n] v[1].
+        The loops left out u[1] v[n] and u[n] v[1], because coefficient n was still unknown.
         """
         lines: list[str] = []
         for i, slot in enumerate(self.slots):

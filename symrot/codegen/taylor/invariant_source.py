@@ -93,9 +93,9 @@ def _gradient(tape: Tape, output: int, states: Sequence[str]) -> list[str]:
         op = tape.operations[index]
         if index not in varying or op.kind == "symbol":
             continue
-        own = f"g{output}_{index}"
-        lines.append(f"const double {own} = {' + '.join(terms.pop(index))};")
-        for operand, share in zip(op.operands, _shares(op, index, own), strict=True):
+        slope = f"g{output}_{index}"
+        lines.append(f"const double {slope} = {' + '.join(terms.pop(index))};")
+        for operand, share in zip(op.operands, _shares(op, index, slope), strict=True):
             if operand in varying:
                 terms.setdefault(operand, []).append(share)
     derivatives = {tape.operations[index].value: " + ".join(parts) for index, parts in terms.items()}
@@ -111,18 +111,21 @@ def _varying(tape: Tape, needed: Sequence[int], states: set[str]) -> set[int]:
     return varying
 
 
-def _shares(op: Operation, index: int, own: str) -> list[str]:
-    """Return the C terms that an operation adds to the derivatives by its operands: ``g*v2, g*v1`` for ``v1*v2``."""
-    # own: the C name g of the derivative by the result of the operation
+def _shares(op: Operation, index: int, slope: str) -> list[str]:
+    """Return the C terms by which an operation changes the derivatives with respect to its operands, one per operand.
+
+    For ``v3 = v1*v2`` they are ``g*v2.hi`` and ``g*v1.hi``, where g is the C name ``slope`` of the derivative with
+    respect to v3. ``index`` is 3.
+    """
     values = [f"v{i}.hi" for i in op.operands]
     if op.kind == "+":
-        return [own, own]
+        return [slope, slope]
     if op.kind == "-":
-        return [own, f"-{own}"]
+        return [slope, f"-{slope}"]
     if op.kind == "neg":
-        return [f"-{own}"]
+        return [f"-{slope}"]
     if op.kind == "*":
-        return [f"{own}*{values[1]}", f"{own}*{values[0]}"]
+        return [f"{slope}*{values[1]}", f"{slope}*{values[0]}"]
     if op.kind == "/":
-        return [f"{own}/{values[1]}", f"-{own}*v{index}.hi/{values[1]}"]
-    return [f"0.5*{own}/v{index}.hi"]  # sqrt
+        return [f"{slope}/{values[1]}", f"-{slope}*v{index}.hi/{values[1]}"]
+    return [f"0.5*{slope}/v{index}.hi"]  # sqrt

@@ -87,12 +87,18 @@ def lay_out(system: Recurrences, edges: Sequence[int]) -> Layout:
 
 
 def cost(layout: Layout) -> int:
-    """Return an estimate of the time that one coefficient of all series takes: the number of columns and rows."""
+    """Return an estimate of the time that one coefficient of all series takes: the number of columns plus that of rows.
+
+    A column is a vector of four convolutions, a row a vector of up to four series.
+    """
     return len(layout.columns) + len(layout.rows)
 
 
 def _with_bundles(system: Recurrences) -> Recurrences:
-    """Return a system in which products that occur together in several sums, such as ``a*b - c*d``, form one sum."""
+    """Return a system in which products that occur together in several sums are added up once, as one more series.
+
+    If ``a*b - c*d`` occurs in two sums, it becomes a series that both sums contain.
+    """
     series = list(system.series)
     sums = [(i, s) for i, s in enumerate(series) if s.rule == "sum"]
     sums += [(-1 - i, rate) for i, rate in enumerate(system.rates)]
@@ -159,7 +165,10 @@ class _Placer:
         self.rows.append(row._replace(lanes=lanes))
 
     def _inlined(self, most_uses: int) -> set[int]:
-        """Return the indices of the products u v that are computed within sums, and not as series of their own."""
+        """Return the indices of the products of two series that are computed only as summands of sums.
+
+        A product is one of them if only sums contain it, and at most ``most_uses`` sums.
+        """
         count: dict[int, int] = {}
         for s in (*self.series, *self.system.rates):
             for operand in s.operands:
@@ -216,9 +225,9 @@ class _Placer:
     # -------------------------------------------------------------------------------------------- packs
 
     def pack(self, items: Sequence[tuple[int, int] | None]) -> Pack:
-        """Return the vector (pack) of up to four ``items``, each a pair (sign, index of a series) or None.
+        """Return a pack, a vector of four series, for four ``items``: pairs (sign, index of a series) or None.
 
-        A lane with None gets any series with which reading the pack costs no extra time.
+        None stands for any value: it becomes a series of the same row as the first pair, whose vector is read anyway.
         """
         addresses = [None if item is None else self.address(*item, lane) for lane, item in enumerate(items)]
         first = next(address for address in addresses if address is not None)
@@ -238,11 +247,11 @@ class _Placer:
         return Address(sign, first.row, lane if self.rows[first.row].lanes[lane] == series else first.lane)
 
     def column(self, pairs: Sequence[_Pair | None], ends: str, needed: Sequence[bool] = ()) -> int:
-        """Add a column, the convolution of two packs, and return the index of the new column.
+        """Add a column, a vector of four convolutions ``sum(a[k] b[n-k])``, and return the index of the new column.
 
-        ``pairs[i]`` are the two series to convolve in lane i, each as (sign, index), or None. A lane with None has the
-        value zero if ``needed[i]``, otherwise any value. ``ends`` says which end terms ``a[0] b[n]`` and ``a[n] b[0]``
-        the convolution includes: ``"both"``, ``"last"`` (the second) or ``"none"``.
+        ``pairs[i]`` are the two series a and b of lane i, each as (sign, index). None stands for no convolution: lane i
+        then has the value zero if ``needed[i]``, otherwise any value. ``ends`` says which of the terms ``a[0] b[n]``
+        and ``a[n] b[0]`` are included: ``"both"``, ``"last"`` (only the second) or ``"none"``.
         """
         a = self.pack([None if pair is None else pair[0] for pair in pairs])
         b = self.pack([None if pair is None else pair[1] for pair in pairs])
@@ -319,7 +328,7 @@ class _Placer:
         return Row("sum", lanes, tuple(made), tuple(terms), None if set(constants) == {ZERO} else constants)
 
     def _columns(self, lanes: list[list[tuple[int, int]]]) -> Iterable[int]:
-        """Add columns that compute all products in ``lanes``, and yield the indices of the new columns.
+        """Add columns (vectors of four convolutions) that compute all products in ``lanes``; yield the column indices.
 
         ``lanes[i]`` are the products to add up in lane i, as (sign, index of the product). A column computes one
         product in each of the four lanes.
@@ -344,14 +353,18 @@ class _Placer:
             yield self.column(picked, "both", needed)
 
     def _shared(self, lanes: list[list[tuple[int, int, int]]]) -> int | None:
-        """Return a series that is a factor of a product (sign, u, v) in each of several lanes, or None."""
+        """Return the lowest index of a series that is a factor in every lane, or None if there is no such series.
+
+        Each lane is a list of products (sign, u, v) with the indices u and v of their factors. For one lane the result
+        is None.
+        """
         if len(lanes) < 2:
             return None
         common = set.intersection(*({u for _, *pair in lane for u in pair} for lane in lanes))
         return min(common, default=None)
 
     def _mixed(self, terms: list[tuple[int, int, int] | None], needed: Sequence[bool]) -> int:
-        """Add a column with the product ``terms[i]`` of two series in lane i, and return the index of the new column.
+        """Add a column (vector of four convolutions) with the product ``terms[i]`` in lane i, and return its index.
 
         A product is (sign, u, v) with the indices of two series, or None. A lane with None has the value zero if
         ``needed[i]``, otherwise any value.

@@ -25,7 +25,7 @@ class Linear(NamedTuple):
 
 
 def alone(series: int) -> Linear:
-    """Return the linear form that is the one series with the index ``series``."""
+    """Return one Taylor series, given by its index, as a linear form: its weight is 1, and the constant is zero."""
     return Linear(None, {series: ONE})
 
 

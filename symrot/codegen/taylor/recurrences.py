@@ -13,9 +13,9 @@ primitive              ``n w[n] = (g[n] - sum(e[k] v[n-k], k = 1..n-1))/v[0]``: 
 clock                  ``n w[n] = s a v[n-1]``: exp, sin, cos, sinh, cosh of ``a t + b``
 =====================  ====================================================================================
 
-In the rules driven and clock, ``s v`` is the derivative of the function: for cos, v is sin and s = -1. Here t is the
-time from the centre of the expansion. Source: A. Griewank, A. Walther, Evaluating Derivatives, 2nd ed., sections 10.2
-and 13.2.
+In the rules driven and clock, ``s v`` is the derivative of the function: for cos, v is sin and s = -1. In the rule
+primitive, ``g/v`` is ``t w'``: for ``w = log(u)``, g is ``t u'`` and v is u. Here t is the time from the centre of the
+expansion. Source: A. Griewank, A. Walther, Evaluating Derivatives, 2nd ed., sections 10.2 and 13.2.
 
 Standard library only: the recurrences of a cached kernel are built without SymPy.
 """
@@ -49,7 +49,7 @@ TANGENTS = {"tan": 1, "tanh": -1}  # function -> sign in t w' = (1 + sign w^2) t
 
 
 class Series(NamedTuple):
-    """One series of Taylor coefficients: its rule, its operands, and the constants of the rule."""
+    """One series of Taylor coefficients: the rule that computes it, its operands, and the constants of the rule."""
 
     rule: str  # state time sum product quotient root driven primitive clock, or theta (t u')
     # indices of series; for a function f(u), the last is the argument u
@@ -264,11 +264,12 @@ class _Builder:
         return (weight, form.constant) if series >= 0 and self.series[series].rule == "time" else None
 
     def driven(self, functions: Sequence[tuple[str, int]], partners: Sequence[int], argument: Linear) -> int:
-        """Add a series for each of ``functions``, unless it exists, and return the index of the first series.
+        """Add the Taylor series of functions of ``argument`` that are each other's derivatives, such as sin and cos.
 
-        ``functions`` are pairs (name, sign): the derivative of function i is sign times function ``partners[i]``.
+        ``functions`` are pairs (name, sign): the derivative of function i is sign times function ``partners[i]``; for
+        sin and cos, partners are (1, 0). Return the index of the first series; the others follow it. Series that exist
+        already are not added again.
         """
-        # for sin and cos, partners are (1, 0)
         clock = self.clock(argument)
         seed = () if clock else (self.series_of(argument),)
         drive = () if clock else (self.theta(*seed),)

@@ -85,17 +85,19 @@ def _table(items: Iterable[str]) -> str:
 
 
 def jet_source(layout: Layout, parameters: Sequence[str]) -> str:
-    """Return the C functions ``symrot_constants`` and ``symrot_jet`` (all Taylor coefficients) for a layout."""
+    """Return the C functions ``symrot_constants`` and ``symrot_jet``, which computes the Taylor coefficients.
+
+    ``layout`` says how the series are arranged in SIMD vectors.
+    """
     return _Jet(layout, parameters).text()
 
 
 class _Jet:
-    """Writes the C function that computes all Taylor coefficients, number by number, of series in SIMD vectors.
+    """Writes the C function that computes the Taylor coefficients of series in SIMD vectors: coefficients 0, then 1, ..
 
     ``layout`` arranges the series in rows (vectors of four series) and columns (vectors of four convolutions
-    ``sum(a[k] b[n-k])``). Coefficient 0 has the ``stage`` ``"first"``, coefficient 1 ``"second"``, and all others
-    ``"later"``. From n = 2 on, a C loop first adds up the inner terms (k = 1 to n - 1) of column i, in the C variable
-    ``a{i}`` for even n and ``b{i}`` for odd n. The argument ``sums`` of methods is this letter, a or b.
+    ``sum(a[k] b[n-k])``). From n = 2 on, a C loop first adds up the terms k = 1 to n - 1 of column i, in the C variable
+    ``a{i}`` for even n and ``b{i}`` for odd n.
     """
 
     def __init__(self, layout: Layout, parameters: Sequence[str]) -> None:
@@ -127,12 +129,14 @@ class _Jet:
         return f"x[{row}]" if row < self.own_rows else f"u{row}"
 
     def newest(self, pack: Pack) -> str:
-        """Return the C expression for the coefficients number n, just computed, of a pack (vector of four series)."""
+        """Return the C expression for coefficient n, the newest, of each of the four series in a pack."""
         return f"l{self.packs[pack]}" if pack in self.packs else self.picked(pack)
 
     def picked(self, pack: Pack) -> str:
-        """Return the C expression that picks coefficients n of a pack (any four series) from vectors ``r0, r1, ..``."""
-        # r{i} holds coefficients n of the up to four series in row i
+        """Return the C expression that gathers coefficient n, the newest, of each of the four series in a pack.
+
+        The C variable ``r{i}`` has coefficient n of each series in row i.
+        """
         rows = sorted({address.row for address in pack})
         if _is_row(pack):
             return f"r{rows[0]}"
@@ -147,10 +151,11 @@ class _Jet:
         return f"V_FLIP({value}, {', '.join('-1' if sign < 0 else '1' for sign in signs)})" if -1 in signs else value
 
     def column(self, index: int, stage: str, sums: str) -> str:
-        """Return the C expression for coefficient n of four products of series, the column ``index``; empty for zero.
+        """Return the C expression for coefficient n of column ``index``, which has four convolutions; empty for zero.
 
-        The C variable named by ``sums`` and ``index``, such as ``a2``, holds the inner terms of the convolutions from
-        n = 2 on; the terms k = 0 and k = n are added. ``stage`` tells n = 0, n = 1 and n > 1 apart.
+        ``stage`` is "first" for n = 0, "second" for n = 1, else "later". ``sums`` is "a" for even n, "b" for odd n: the
+        C variable ``a{index}`` or ``b{index}`` has the terms k = 1 to n - 1, to which this expression adds k = 0 and
+        k = n.
         """
         a, b, ends = self.layout.columns[index]
         known = f"{sums}{index}" if stage == "later" else ""
@@ -172,10 +177,10 @@ class _Jet:
     # -------------------------------------------------------------------------------------------- rows
 
     def sum(self, row: Row, stage: str, sums: str, factor: str = "", fused: str = "V_FMA") -> str:
-        """Return the C expression for coefficient n of four weighted sums of series and products, a row of ``layout``.
+        """Return the C expression for coefficient n of the sums in ``row``: one sum of series and products per lane.
 
-        It is multiplied by ``factor`` (C text; empty for 1). ``fused`` is the C function that computes a b + c.
-        ``stage`` and ``sums`` follow from n, as the class says.
+        The expression is multiplied by ``factor`` (C text; empty for 1). ``fused`` is the C function that computes
+        a b + c; ``stage`` and ``sums`` are as for :meth:`column`.
         """
         # terms that are computed last are added last, so that others need not wait
         value = ""
@@ -192,10 +197,11 @@ class _Jet:
                     value = f"{fused}({part}, {scale}, {value})" if value else f"V_MUL({part}, {scale})"
         return value or "V_ALL(0.0)"
 
-    def _rest_of_time(self, row: Row) -> str:
-        """Return the C text of the four numbers by which the time is multiplied in the four sums of ``row``.
+    def _weights_of_time(self, row: Row) -> str:
+        """Return the C text of a vector: the factor by which each of the four sums in ``row`` multiplies the time.
 
-        The text is empty if no sum contains the time. The time is t + t_low, two doubles, and t_low is added apart.
+        The text is empty if no sum contains the time. The time is the sum t + t_low of two doubles; the sums contain t,
+        and :meth:`row` adds t_low times this vector.
         """
         weights: list[Node] = []
         for number in row.lanes:
@@ -206,7 +212,10 @@ class _Jet:
         return self.constant(tuple(weights)) if any(weight != ZERO for weight in weights) else ""
 
     def _weighted(self, weights: tuple[Node, ...], factor: str) -> str:
-        """Return the C expression of four constants times ``factor``; an argument or result ``""`` stands for 1."""
+        """Return the C expression of ``factor`` times the vector of four constants ``weights``.
+
+        The text ``""`` stands for 1, both as ``factor`` and as the result.
+        """
         ones = all(weight == ONE for weight in weights)
         if ones:
             return factor
@@ -214,9 +223,9 @@ class _Jet:
         return f"V_MUL({constant}, {factor})" if factor else constant
 
     def row(self, number: int, n: str, stage: str, sums: str) -> list[str]:
-        """Return the C statements that set ``r{number}``, row ``number`` of four series, to their coefficients ``n``.
+        """Return the C statements that set the vector ``r{number}`` to coefficient ``n`` of the series in this row.
 
-        ``n`` is C text; ``stage`` and ``sums`` follow from it, as the class says.
+        ``n`` is C text; ``stage`` and ``sums`` are as for :meth:`column`.
         """
         row, name = self.rows[number], f"r{number}"
         terms = [self.picked(term.pack) for term in row.terms]
@@ -224,7 +233,7 @@ class _Jet:
         if row.rule == "product":
             return [f"{name} = {total};"]
         if row.rule == "sum":
-            rest = self._rest_of_time(row) if stage == "first" else ""
+            rest = self._weights_of_time(row) if stage == "first" else ""
             value = self.sum(row, stage, sums, fused="symrot_fused" if rest else "V_FMA")
             return [f"{name} = {f'V_FMA(V_ALL(t_low), {rest}, {value})' if rest else value};"]
         if row.rule == "time":
@@ -287,7 +296,7 @@ class _Jet:
         return f"V_SET({', '.join(lanes)})"
 
     def _clock_seed(self, row: Row, name: str) -> list[str]:
-        """Return the C statements that set ``name`` to coefficient 0 of four series, sines and cosines of a t + b."""
+        """Return the C statements that set ``name`` to coefficient 0 of four functions such as sin(a t + b)."""
         series = [self.layout.series[i] for i in row.lanes if i is not None]
         rates = self.constant(tuple(s.weights[0] for s in series))  # type: ignore[misc]
         offsets = self.constant(row.constant) if row.constant and set(row.constant) != {ZERO} else ""
@@ -339,9 +348,10 @@ class _Jet:
     # -------------------------------------------------------------------------------------------- orders
 
     def order(self, n: str, stage: str, sums: str) -> list[str]:
-        """Return the C statements that compute coefficient number ``n`` of all series, then n + 1 of the states.
+        """Return the C statements that compute coefficient ``n`` of all series, then coefficient n + 1 of the states.
 
-        ``n`` is C text: ``"0"``, ``"1"``, ``"n"`` or ``"m"``; ``stage`` and ``sums`` follow from it, as the class says.
+        ``n`` is C text: ``"0"``, ``"1"``, ``"n"`` (even) or ``"m"`` (n + 1). ``stage`` and ``sums`` are as for
+        :meth:`column`.
         """
         lines: list[str] = []
         done, packed = set(range(self.state_rows)), set[Pack]()
@@ -371,7 +381,7 @@ class _Jet:
         return lines
 
     def loops(self) -> list[str]:
-        """Return the C loops that add up the inner terms of the convolutions for two coefficients: n (even) and n + 1.
+        """Return the C loops that add up terms of all convolutions for two coefficients: n (even) and n + 1.
 
         They set the C variable ``a{i}`` to the terms k = 1 to n - 1 of column i for coefficient n, and ``b{i}`` to the
         terms for coefficient n + 1 that contain no coefficient n, which is still unknown.
@@ -402,9 +412,9 @@ class _Jet:
         return lines
 
     def completed_sums(self) -> list[str]:
-        """Return the C statements that add the last inner terms for coefficient n + 1 to the C variables ``b{i}``.
+        """Return the C statements that complete the C variables ``b{i}``, the sums for coefficient n + 1 of column i.
 
-        These terms contain coefficient n of a series, which was unknown during the loops: a[1] b[n] and a[n] b[1].
+        The loops left out a[1] b[n] and a[n] b[1], because coefficient n was still unknown.
         """
         lines: list[str] = []
         for i, (a, b, _) in enumerate(self.layout.columns):

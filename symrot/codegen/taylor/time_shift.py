@@ -133,7 +133,7 @@ class _Mover:
     def gathered(self, node: Node) -> _Form | None:
         """Return a sum with its terms of the form a t + b added up: ``(t - 2) + x + 3`` becomes ``(t + 1) + x``.
 
-        The result is None if the whole sum is of this form, or if there are no two such terms, at least one with t.
+        The result is None if all terms are of this form, if fewer than two are, or if none of those contains t.
         """
         lines: list[tuple[Node, ...]] = []
         others: list[tuple[bool, _Form]] = []
@@ -166,9 +166,9 @@ class _Mover:
             yield negative, self.read(node)
 
     def written(self, form: _Form) -> Node:
-        """Return the formula of a :class:`_Form` in tau = t - epoch, the time counted from the epoch.
+        """Return the formula of ``form`` in tau = t - epoch, the time counted from the epoch.
 
-        A polynomial without a formula is written by Horner's rule.
+        If the form has only the coefficients of a polynomial in t, the formula is made by Horner's rule.
         """
         if form.node is not None:
             return form.node
@@ -238,8 +238,8 @@ def _is_shifted(form: _Form) -> bool:
 def _terms(node: Node, parts: list[tuple[Node, ...] | None]) -> tuple[Node, ...] | None:
     """Return the coefficients in t, lowest power first, of an operation on polynomials with the coefficients ``parts``.
 
-    The result is None if an operand is no polynomial (None in ``parts``), or if the result is none, or one of a degree
-    above ``HIGHEST``.
+    The result is None if an operand is no polynomial (None in ``parts``), or if the operation gives no polynomial or
+    one of a degree above ``HIGHEST``.
     """
     if any(part is None for part in parts):
         return None

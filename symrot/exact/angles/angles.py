@@ -15,7 +15,7 @@ from sympy import Expr, Rational, chebyshevt_poly, chebyshevu_poly, cos, pi, sin
 from symrot.errors import InputError
 
 PARTS = 24
-"""Angles that are multiples of pi/24 have sines and cosines in Q(sqrt 2, sqrt 3, cos(pi/8)), so they need no atom."""
+"""Number n for which multiples of pi/n need no atom: their sines and cosines are in Q(sqrt 2, sqrt 3, cos(pi/8))."""
 
 
 @dataclass(frozen=True)

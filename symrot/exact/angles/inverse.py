@@ -21,7 +21,10 @@ INVERSE: dict[type, Callable[..., Pair]] = {
     atan: lambda u: (1 / sqrt(1 + u**2), u / sqrt(1 + u**2)),
     atan2: lambda y, x: (x / sqrt(x**2 + y**2), y / sqrt(x**2 + y**2)),
 }
-"""Function -> (cosine, sine) of its value."""
+"""Inverse function -> function from its arguments to the cosine and sine of its value.
+
+For ``asin(u)`` they are ``sqrt(1 - u^2)`` and u.
+"""
 
 
 def cosine_sine(angle: Expr, halvings: int) -> Pair:

@@ -19,7 +19,9 @@ from symrot.exact.ring.ratio import Ratio, Ratios, TooLarge
 __all__ = ["Angles"]
 
 MOST_MULTIPLES = 240
-"""Largest n for which the sine and cosine of n times a base angle are expanded; an eighth of it for fractions of pi."""
+"""Largest n for which the sine and cosine of n times a base angle are expanded.
+
+For a base angle that is a fraction of pi, such as pi/7, the limit is an eighth of this number."""
 
 MOST_TERMS = 4096
 """Largest number of terms in the expanded sine or cosine of a sum of base angles; twelve angles give 2048."""
@@ -38,11 +40,13 @@ class Angles:
     forms : mapping
         Angle as it is written -> its linear form.
     bases : mapping
-        Atom of angles -> the coefficient of its base angle: 1/2 for theta with the base angle theta/2.
+        Atom (a symbol, or a product such as ``x*y``, in angles) -> coefficient of its base angle, of which all its
+        angles are whole multiples: 1/2 for theta with the base angle theta/2.
     cosines, sines : mapping
         Atom -> index of the variable for the cosine or sine of its base angle.
     fine, fine_place : int
-        N and the index of the variable for 2 cos(pi/N); N is 0 if there is no such variable.
+        N and the index of the variable for 2 cos(pi/N), in which the sines and cosines of constant angles such as
+        3 pi/7 are polynomials (N = 14); N is 0 if the ring has no such variable.
     known : dict
         Angle -> (cosine, sine), the results of :meth:`cosine_sine` so far.
     """

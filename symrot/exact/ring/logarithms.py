@@ -20,10 +20,10 @@ from symrot.exact.ring.roots import sign_of
 __all__ = ["Product", "logarithms_in", "product_of", "sums_of_logarithms"]
 
 MOST_BITS_FACTORED = 64
-"""A number with more bits is not factored into primes."""
+"""Largest number of bits of a number that is factored into primes."""
 
 MOST_TERMS = 60
-"""A numerator or denominator, in the argument of a logarithm, that has more terms is not factored."""
+"""Largest number of terms of a polynomial, in the argument of a logarithm, that is factored."""
 
 
 @dataclass(frozen=True)
@@ -101,7 +101,10 @@ def sums_of_logarithms(products: Mapping[Expr, Product]) -> dict[Expr, Expr]:
 
 
 def _known_signs(products: Sequence[Product]) -> dict[Expr, int]:
-    """Return the signs, 1 or -1, of the factors that are known because all ``products`` are positive."""
+    """Return a map from factors to their signs, 1 or -1, for all factors whose sign is known.
+
+    A sign is known from the factor itself, or follows because all ``products`` are positive.
+    """
     factors = {factor for product in products for factor in product.powers}
     signs = {factor: sign for factor in factors if (sign := _sign(factor))}
     open_products = [product for product in products if product.sign]
@@ -119,7 +122,7 @@ def _known_signs(products: Sequence[Product]) -> dict[Expr, int]:
 
 
 def _sign(factor: Expr) -> int:
-    """Return 1 or -1 for a factor whose sign SymPy's assumptions or its value show, else 0."""
+    """Return the sign, 1 or -1, of a factor if its value or SymPy's assumptions show it, otherwise 0."""
     if factor.is_number:
         interval = enclosure(factor)
         return 0 if interval is None or 0 in interval else 1 if interval.a > 0 else -1

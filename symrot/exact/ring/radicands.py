@@ -122,9 +122,9 @@ def dependences(radicands: Mapping[Root, PolyElement], generators: Sequence[Expr
 
 
 def without_circles(new: Mapping[Root, Dependence], known: Mapping[Root, Dependence]) -> dict[Root, Dependence]:
-    """Return those of the dependences ``new`` in which no root is expressed by itself, not even through others.
+    """Return the entries of ``new`` (root -> product of other roots) in which no root is expressed by itself.
 
-    ``known`` holds dependences that were accepted before.
+    A root could be expressed by itself through other roots too. ``known`` are entries that were accepted before.
     """
     accepted: dict[Root, Dependence] = {}
     for root, dependence in new.items():

@@ -1,8 +1,8 @@
 """Fractions of polynomials whose denominators are stored as products of factors, each factor with an exponent.
 
 Formulas of rotation divide often by the same few factors, such as ``sin(theta)``; then sums of fractions are sums of
-polynomials. For messages, each factor is stored with a divisor that contains the factor, as the user's formula writes
-this divisor.
+polynomials. For messages, each factor is stored with the divisor in which it first occurred, written as in the user's
+formula.
 """
 
 from collections.abc import Callable, Sequence
@@ -23,8 +23,8 @@ __all__ = ["MOST_PRODUCTS", "Ratio", "Ratios", "TooLarge"]
 MOST_PRODUCTS = 1_000_000
 """Largest number of products of two terms in one polynomial ring, which take seconds.
 
-A count, unlike a time, ends at the same term on every machine. The claims of the four textbooks and courses need at
-most 27 000."""
+A count, unlike a time limit, stops a computation at the same term on every machine. The formulas of the four textbooks
+and courses that symrot checks need at most 27 000."""
 
 
 class TooLarge(InputError):

@@ -243,7 +243,7 @@ class FormulaRing:
         return dependences({root: self._polynomial(root) for root in places}, self.generators)
 
     def _take_fine_constants(self) -> int:
-        """Return N if the ring needs a variable for the constant 2 cos(pi/N), else 0; delete pi from ``bases`` then.
+        """If the ring needs a variable for 2 cos(pi/N), delete pi from ``bases`` and return N; otherwise return 0.
 
         The sines and cosines of all constant angles, such as 3 pi/7, are polynomials in 2 cos(pi/14), with N = 14.
         """
@@ -307,8 +307,9 @@ class FormulaRing:
     def _tangled_numbers(self, rules: Sequence[Rule]) -> dict[int, Number]:
         """Return a map from indices of variables to the algebraic numbers that they stand for, such as 2^(1/3).
 
-        There may be equations between such numbers that do not follow from the ring's relations. The map is empty if
-        there are none, as for square roots of primes alone, and if the ring contains the imaginary unit.
+        Such numbers may satisfy equations that do not follow from the ring's relations. The map is empty if they
+        cannot, as for square roots of primes alone, and if the ring contains the imaginary unit, because the proofs of
+        these equations need real numbers.
         """
         known: dict[int, Number] = {}
         if self.fine:
@@ -319,7 +320,6 @@ class FormulaRing:
                 known[place] = root_number(place, root.index, inside[place], known)
         simple = all(number.index == 2 and not number.needs for number in known.values())
         # an equation such as sqrt(2)*sqrt(3) = sqrt(6); square roots of primes satisfy none
-        # {} also for an imaginary number, because the proofs need real numbers
         return {} if simple or len(known) < 2 or I in self.generators else known
 
     def reduce(self, poly: PolyElement) -> PolyElement:

@@ -30,7 +30,7 @@ __all__ = [
 ]
 
 MOST_TERMS = 4000
-"""Largest number of terms of the radicand of a root, which is ``P Q^(n-1)`` for a root of P/Q."""
+"""Largest number of terms of a radicand, which is ``P Q^(n-1)`` for the n-th root of a fraction P/Q."""
 
 MOST_BITS_FACTORED, LARGEST_DIVISOR = 64, 2**15
 """Largest number of bits of a number that is factored completely; in longer numbers, only divisors below
@@ -77,9 +77,10 @@ class Radicand:
 
 @dataclass(frozen=True)
 class Radical:
-    """A fractional power in factors: ``rational * product(roots) / below``, times ``f^n`` for (f, n) in ``outside``.
+    """A fractional power in factors: ``(rational * product(roots) / below * product(f^n))^power``.
 
-    All of this is raised to ``power``. ``sqrt(4 x^2 y)`` has rational 2, the root sqrt(y) and the pair (``|x|``, 1).
+    The pairs (f, n) are in ``outside``. ``sqrt(4 x^2 y)^3`` has rational 2, the root sqrt(y), the pair (``|x|``, 1) and
+    power 3.
     """
 
     base: Expr
@@ -101,7 +102,7 @@ class Radical:
 
     @property
     def parts(self) -> tuple[Expr, ...]:
-        """The formulas inside this power, such as radicands, whose own symbols and roots the ring needs too."""
+        """The formulas inside this power, such as radicands: the ring also needs the symbols and roots in them."""
         insides = [root.power_expression for root in self.generators]
         return (self.rational, self.below, *insides, *(f for f, _ in self.outside if not isinstance(f, Root)))
 
@@ -145,7 +146,7 @@ def radical(node: Expr, radicand: Callable[[Expr, int], Radicand]) -> Radical:
     if above == -1 and below == 1 and index == 2:
         roots.append(_imaginary_unit())
     elif above.is_Rational and index != 2 and above * sign_of(below) < 0:
-        raise InputError(f"a root of a negative number is no real number: {node}")
+        raise InputError(f"a root of a negative number is not a real number: {node}")
     elif above != 1 or below != 1:
         terms, times = len(Add.make_args(below)), index - 1
         if len(Add.make_args(above)) * comb(terms + times - 1, times) > MOST_TERMS:
@@ -216,7 +217,10 @@ def _factors_of_number(whole: int) -> dict[int, int]:
     powers = dict(factorint(whole, limit=LARGEST_DIVISOR, use_rho=False, use_pm1=False, use_ecm=False))
     if all(factor < LARGEST_DIVISOR**2 or isprime(factor) for factor in powers):
         return powers
-    raise TooLarge(f"expected numbers under roots of at most {MOST_BITS_FACTORED} bits, to be factored")
+    raise TooLarge(
+        f"expected numbers of at most {MOST_BITS_FACTORED} bits under roots, since they must be factored; got one of "
+        f"{whole.bit_length()} bits"
+    )
 
 
 def _nesting(expressions: Iterable[Expr]) -> int:

@@ -34,7 +34,7 @@ def html_sheet(exercises: Sequence[Exercise], title: str, statements: bool, solu
     compare = ", or compare them with the answer" if solutions else ""
     parts = [
         heading,
-        '<p class="note">Numbers are checked in this page: write them with a unit and at least three digits, such as '
+        '<p class="note">Numbers are checked on this page: write them with a unit and at least three digits, such as '
         f"<code>0.125 kg m^2</code>. Check formulas with <code>symrot grade</code>{compare}.</p>",
         *(_exercise(number, exercise, solutions) for number, exercise in enumerate(exercises, 1)),
         f'<script type="application/json" id="questions">{_json(_data(exercises))}</script>',

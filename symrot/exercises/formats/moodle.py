@@ -17,10 +17,10 @@ from symrot.exercises.grading.numbers import TOLERANCE
 __all__ = ["moodle_quiz"]
 
 UNIT_PENALTY = "0.1"
-SPELLING = "Write products with * and powers with ^, with one fraction, letters in the order of the alphabet."
+SPELLING = "Write products with *, powers with ^, at most one fraction, and the letters in alphabetical order."
 UNMATCHED = (
     "Moodle compares formulas letter by letter, so an equal formula that is written in another way is not recognised. "
-    "Compare yours with the solution; the command symrot grade decides it."
+    "Compare yours with the solution; the command symrot grade decides whether both are equal."
 )
 
 

@@ -85,7 +85,10 @@ def turned_twice(first: str, second: str) -> str:
 
 
 def two_steps(first: str, second: str) -> str:
-    """Return an SVG drawing of a box before and after a rotation about a fixed axis, and after one about another."""
+    """Return an SVG drawing of a box in three attitudes: at the start, and after each of two rotations.
+
+    The rotations are about the fixed axes ``first`` and ``second``.
+    """
     picture = Picture()
     axes = [np.eye(3)[LETTERS.index(letter)] for letter in (first, second)]
     after = rotation(axes[0], 40.0)

@@ -33,7 +33,7 @@ def body_precession(random: Random) -> Problem:
         (TRANSVERSE, AXIAL, SPIN),
         (
             Line("Euler's equation of axis 2.", rates[1], omega_1 * formula, r"\dot\omega_2"),
-            Line(r"Divided by $\omega_1$, it gives the rate $\lambda$.", rates[1] / omega_1, formula, r"\lambda"),
+            Line(r"Divide by $\omega_1$ to get the rate $\lambda$.", rates[1] / omega_1, formula, r"\lambda"),
         ),
         (
             Asked(
@@ -117,7 +117,7 @@ def disk_wobble(random: Random) -> Problem:
         r"The axis precesses at $H/A$. For a small wobble $H$ is nearly $C\omega_3$.",
         (SPIN,),
         (
-            Line("The moment about the axis over the moment across it.", ratio, 2, r"\frac{C}{A}"),
+            Line("The moment about the axis divided by the transverse moment.", ratio, 2, r"\frac{C}{A}"),
             Line("The rate of the wobble in space.", ratio * omega_3, formula, r"\dot\phi"),
         ),
         (Asked(r"\dot\phi", "the rate of the wobble in space, if it is small", formula, "rad/s"),),
@@ -137,7 +137,7 @@ def rod_like_precession(random: Random) -> Problem:
         (quantity(R, "10 20 40 50 100", "mm", "radius"), quantity(L, "100 200 300 400", "mm", "length"), SPIN),
         (
             Line(
-                "The moment about the axis over the moment across it.",
+                "The moment about the axis divided by the transverse moment.",
                 ratio,
                 6 * R**2 / (L**2 + 3 * R**2),
                 r"\frac{C}{A}",

@@ -155,7 +155,14 @@ def momentum_about_vertical(random: Random) -> Problem:
         "its axis.",
         "Add the vertical components of the angular momentum along the axis and perpendicular to it.",
         _quantities(formula),
-        (Line("The derivative of the kinetic energy by the rate of precession.", momentum, formula, r"p_\phi"),),
+        (
+            Line(
+                "The derivative of the kinetic energy with respect to the rate of precession.",
+                momentum,
+                formula,
+                r"p_\phi",
+            ),
+        ),
         (Asked(r"p_\phi", "the angular momentum about the vertical", formula, "kg m^2/s"),),
         _is_possible,
     )

@@ -227,7 +227,7 @@ def product_of_triangle(random: Random) -> Problem:
             product,
             ADD,
         ),
-        (Asked("I_{xy}", "the product of inertia about the right angle", product, "kg m^2"),),
+        (Asked("I_{xy}", "the product of inertia about the corner with the right angle", product, "kg m^2"),),
     )
 
 

@@ -29,7 +29,8 @@ def piston_speed(random: Random) -> Problem:
     return Problem(
         "The speed of a piston",
         ENGINE,
-        r"The distance of the piston is $x = r\cos\phi + \sqrt{L^2 - r^2\sin^2\phi}$; differentiate it in time.",
+        r"The distance of the piston is $x = r\cos\phi + \sqrt{L^2 - r^2\sin^2\phi}$; differentiate it with respect to "
+        "time.",
         (CRANK, ROD, SPEED, ANGLE),
         (Line("The chain rule, with $\\dot\\phi = \\Omega$.", velocity, formula, r"\dot x"),),
         (Asked(r"\dot x", "the velocity of the piston, positive away from the crank's axis", formula, "m/s"),),

@@ -35,7 +35,7 @@ def period_of_rod(random: Random) -> Problem:
         (LENGTH, GRAVITY),
         (
             Line(
-                "The moment about the end divided by the stiffness of gravity.",
+                "The moment of inertia about the end divided by the restoring torque per unit angle.",
                 square,
                 2 * L / (3 * g),
                 r"\frac{I_O}{m g d}",
@@ -59,7 +59,10 @@ def period_of_disk(random: Random) -> Problem:
         (RADIUS, GRAVITY),
         (
             Line(
-                "The moment about the rim, divided by the stiffness of gravity.", square, square, r"\frac{I_O}{m g d}"
+                "The moment of inertia about the rim divided by the restoring torque per unit angle.",
+                square,
+                square,
+                r"\frac{I_O}{m g d}",
             ),
             Line("The period of small swings.", 2 * pi * sqrt(square), formula, "T"),
         ),

@@ -171,7 +171,7 @@ def twice_the_angle(random: Random) -> Problem:
         (quantity(alpha, "30 45 60 90 120", "deg", "angle"),),
         (
             Line("The scalar part of the product.", square, cos(alpha / 2) ** 2 - sin(alpha / 2) ** 2, "r_0"),
-            Line("The theorem of the double angle.", square, cos(alpha), "r_0"),
+            Line("The double-angle formula.", square, cos(alpha), "r_0"),
         ),
         (Asked("r_0", "the scalar part of the quaternion of both rotations together", cos(alpha), ""),),
         sketch=("z", "α", "α"),

@@ -1,7 +1,8 @@
 r"""Reader of the LaTeX on a page, so that a displayed formula can be proven equal to the derived formula.
 
 A page may write ``R\,[\omega_b]_\times`` where the derivation has nine entries. The text is parsed with the declared
-meanings of the names on the page. A text with another name is only a label, and raises :class:`Unread`.
+meanings of the names on the page. A text with a name that has no declared meaning raises :class:`Unread`; such a text
+can only label what was proven.
 """
 
 from collections.abc import Callable, Iterator, Mapping

@@ -87,7 +87,7 @@ TALL = ("<mfrac", "<mtable", "<msqrt", "<mroot", "<munder", "∑", "∏", "∫",
 
 
 class _Translation:
-    """The translation of parsed LaTeX into items, the parts of a formula; see :class:`Item`."""
+    """The translation of parsed LaTeX into items: parts of a formula, each with its MathML and width."""
 
     def __init__(self, latex: str) -> None:
         self.latex = latex
@@ -96,7 +96,7 @@ class _Translation:
         return complaint(self.latex, "formula", node.start, "LaTeX that the pages use")
 
     def row(self, row: Row) -> list[Item]:
-        """Return the items of a parsed formula, see :class:`Item`."""
+        """Return the parts of a parsed formula, from left to right, each as an :class:`Item` with its MathML."""
         items: list[Item] = []
         kind = "sign"
         marked = False
@@ -128,7 +128,10 @@ class _Translation:
         return _joined(self.argument(node))
 
     def item(self, node: Node, after_operand: bool = False) -> Item:
-        """Return the item of one node of parsed LaTeX; with ``after_operand``, a minus sign is binary, not a prefix."""
+        """Return one node of parsed LaTeX as an :class:`Item`, with its MathML, width and kind.
+
+        With ``after_operand``, a minus sign is binary, not a prefix.
+        """
         if not isinstance(node, Token):
             return self.scripted(node, after_operand) if isinstance(node, Scripts) else ITEMS[type(node)](self, node)
         text = node.text
@@ -254,7 +257,7 @@ def _joined(items: list[Item]) -> Item:
 
 
 def read(latex: str) -> list[Item]:
-    """Return a LaTeX formula as a row of items, see :class:`Item`, which can be joined to MathML or broken into lines.
+    """Return a LaTeX formula as a list of its parts, which can be joined to MathML or broken into lines.
 
     Raises
     ------
@@ -265,7 +268,7 @@ def read(latex: str) -> list[Item]:
 
 
 def rows(latex: str, width: float) -> list[list[Item]]:
-    """Return the lines of a LaTeX formula, each a list of items, at most ``width`` letters wide if possible."""
+    """Return the lines of a LaTeX formula, each a list of its parts, at most ``width`` letters wide if possible."""
     # broken before relations such as =, and if that is not enough, before plus and minus
     return _broken(read(latex), width)
 
@@ -285,7 +288,7 @@ def _broken(items: list[Item], width: float) -> list[list[Item]]:
 
 
 def _stacked(items: list[Item]) -> Item:
-    """Return a row of items, such as a numerator, as a single item; a row wider than WIDEST is broken into lines."""
+    """Return the parts of a formula, such as a numerator, as one part; if wider than WIDEST, it gets several lines."""
     lines = _broken(items, WIDEST)
     if len(lines) == 1:
         return _joined(items)
@@ -294,7 +297,7 @@ def _stacked(items: list[Item]) -> Item:
 
 
 def _pieces(items: list[Item], kind: str) -> Iterator[list[Item]]:
-    """Yield the items in consecutive lists, each but the first beginning with an item of ``kind``.
+    """Yield the parts of a formula in consecutive lists, each but the first beginning with a part of ``kind``.
 
     For "relation", ``a = b + c = d`` gives ``a``, ``= b + c`` and ``= d``.
     """

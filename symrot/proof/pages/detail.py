@@ -139,7 +139,10 @@ def _chain(chain: Chain) -> list[Passage]:
 
 
 def _subtracted_multiples(link: Link) -> tuple[tuple[str, str], ...]:
-    """Return the multiples of hypotheses that the rewriting ``link`` subtracts, as equations (multiple, "0")."""
+    """Return the multiples of hypotheses that a step of a rewriting subtracts, as equations (multiple, "0").
+
+    ``link`` is the expression after the step. The result is empty if the multiples are short, or if there are none.
+    """
     terms = _terms(link)
     # a hypothesis is an expression that is zero; short multiples are in the sentence about the rewriting
     return () if _short(terms) else tuple((term, "0") for term in terms)

@@ -23,9 +23,10 @@ def equation(step: Step) -> str:
 
 
 def repetitions(page: Page) -> frozenset[int]:
-    """Return the numbers of the steps that repeat claim and reason of an earlier step, if at least MANY steps do.
+    """Return the numbers of the steps that repeat the claim and the reason of an earlier step.
 
-    Formulas and sequences of axes such as ZXZ may differ in claims that count as equal.
+    Only claims and reasons that at least MANY steps share are looked for. Claims count as equal if they differ only in
+    formulas and sequences of axes such as ZXZ; reasons must be the same.
     """
     places: dict[tuple[str, str], list[int]] = {}
     for number, step in enumerate(page.steps, page.first):
@@ -97,8 +98,11 @@ def footer(page: Page) -> str:
     count = len(page.steps)
     proven = f"{count} steps, each proven" if count != 1 else "One step, proven"
     sides = [side for step in page.steps for side in step.printed]
-    rest = "" if all(sides) else "; the others are names, or words, for what was proven"
-    sentence = f"Printed from the proof, or read back and decided: {sum(sides)} of {len(sides)} sides{rest}."
+    rest = "" if all(sides) else "; the others are names or words for the expressions that were proven"
+    sentence = (
+        "Sides of equations that are printed from the proof, or were parsed and proven equal to the expression in the "
+        f"proof: {sum(sides)} of {len(sides)}{rest}."
+    )
     return (
         f"{proven} when this page was printed: the normal form of left minus right is zero. {sentence} "
         f"Derived in `{page.file or page.name}`, printed by `symrot derive "

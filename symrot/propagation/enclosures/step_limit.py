@@ -1,9 +1,10 @@
 """Proven upper limits of the step length, so that no step misses a short pulse of a torque formula.
 
-An enclosure bounds the change of the rates while time and states vary in complex discs; this bounds the Taylor
-coefficients that a step omits. The disc of the time has the radius *reach* times the length of the step. The error of a
-state in the step is at most the bound, times the length of the step, times the *missed share*, a small number that
-follows from the reach and the order of the method.
+An enclosure bounds the change of each rate (time derivative of a state) while the time and the states vary in complex
+discs. The same bound limits the Taylor coefficients that a step omits. The disc of the time has the radius *reach*
+times the length of the step. The error of a state in the step is at most the product of three numbers: the bound of its
+rate, the length of the step, and the *missed share*, a small number that follows from the reach and the order of the
+method.
 """
 
 import math
@@ -92,8 +93,9 @@ def _inverse(a: Parts) -> Parts:
 def _sqrt(a: Disc, whole: float) -> Disc:
     """Return a disc that contains the square roots of all numbers in the disc ``a``.
 
-    A step misses only a small share of a change, but may miss the whole of a root near zero: unless all numbers in
-    ``a`` have a positive real part, the radius is multiplied by ``whole``, which is 1 divided by this share.
+    Unless all numbers in ``a`` have a positive real part, the radius is multiplied by ``whole``, 1 divided by the
+    missed share: a square root has no Taylor series at zero, so that a step may miss all of its change there, not only
+    the missed share.
     """
     root = math.sqrt(max(a.centre, 0.0))
     if a.centre > a.radius:
@@ -191,7 +193,7 @@ class Deviations:
     parameters : mapping of str to number
         Values of the parameters of the rates, by name.
     rounded : bool
-        Whether the bounds include the rounding errors of formulas of the time, as for :meth:`rounding_errors`.
+        Whether the bounds include the rounding errors of formulas that contain the time (:meth:`rounding_errors`).
     """
 
     # complex, because such a bound also limits the coefficients of a Taylor series
@@ -210,14 +212,13 @@ class Deviations:
     def __call__(
         self, t: float, radius: float, whole: float, y: Sequence[float], radii: Sequence[float]
     ) -> list[float]:
-        """Return a bound of the change of each rate while time and states vary around ``t`` and ``y``.
+        """Return, for each rate, a bound of its change while time and states vary around ``t`` and ``y``.
 
-        Time varies within ``radius``, s, and state k within ``radii[k]``; all are complex. A step misses only a small
-        share of a change, but may miss the whole of a square root near zero: the radius of such a root is multiplied by
-        ``whole``, which is 1 divided by this share. A bound is infinite if a pole may lie in the discs.
+        Time varies in a complex disc with the radius ``radius``, s, and state k in a disc with the radius ``radii[k]``.
+        The bound of a square root near zero is multiplied by ``whole``, 1 divided by the missed share: the caller
+        multiplies all bounds by the missed share, but a step may miss such a root entirely. A bound is infinite if a
+        pole may lie in the discs.
         """
-        # The caller counts the missed share of a deviation as overlooked; of a square root near zero a step may
-        # overlook all: it is multiplied by whole, 1/missed share.
         self.spent += 1
         try:
             discs = self._discs(t, radius, whole, y, radii)
@@ -227,19 +228,20 @@ class Deviations:
         return [_or_infinite(bound) for bound in bounds]
 
     def rounding_errors(self, t: float, y: Sequence[float]) -> list[float]:
-        """Return a bound of the error of each rate from the rounding of formulas of the time, such as ``t**2 - 25``.
+        """Return bounds of the errors of the rates from the rounding of formulas that contain the time: ``t**2 - 25``.
 
-        The list is empty if the rates contain no such formula.
-        The same bounds in C: :func:`symrot.codegen.enclosure.source.rounding_source`.
+        The list is empty if the rates contain no such formula. The same bounds in C:
+        :func:`symrot.codegen.enclosure.source.rounding_source`.
         """
         return [] if self._rounding is None else self._rounding(t, 0.0, 1.0, y, [0.0] * len(y))
 
     def _discs(
         self, t: float, radius: float, whole: float, y: Sequence[float], radii: Sequence[float]
     ) -> dict[int, Parts]:
-        """Return discs that contain the values of the intermediate results of the rates, for the arguments of a call.
+        """Return discs that contain the values of the intermediate results of the rates while time and states vary.
 
-        The key of a disc is the index of its intermediate result in the series of the enclosure.
+        The arguments are those with which :class:`Deviations` is called. The key of a disc is the index of its
+        intermediate result in the series of the enclosure.
         """
         discs: dict[int, Parts] = {}
         for i, series, operands, weights in self._rules:

@@ -1,7 +1,9 @@
 """Motions by any method as piecewise polynomials in time, for the search for events.
 
-A *row* holds the polynomials of all states in one step: t, h, the low part of t, a unit of time, then coefficient 0 of
-all states, coefficient 1, and so on, in powers of ``(time - t)/unit``. An *edge* is where two rows meet.
+A *row* is an array with the polynomials of all states in one step, in powers of ``(time - t)/unit``. It begins with
+four numbers: t and h, the start and the length of the step, the digits of the start that do not fit into t, and the
+unit, a time. Then follow coefficient 0 of all states, coefficient 1 of all states, and so on. An *edge* is the time at
+which two rows meet.
 """
 
 import math

@@ -174,12 +174,13 @@ def search(
         Consecutive pieces of the motion from t0 on, as polynomials (:mod:`symrot.propagation.events.polynomials`). The
         search takes pieces until it finds a terminal event.
     error : float
-        Error of the states, relative to their sizes. An extremum is listed as a doubt if this error may move it past
-        zero.
+        Error of the states, relative to their sizes. An extremum that this error may move past zero is listed in
+        ``doubts`` of the result.
     y0 : sequence of float, optional
-        The states at t0, if the polynomials of ``pieces`` have them only to rounding errors.
+        The exact states at t0, passed if the polynomials of ``pieces`` reproduce them only up to rounding errors.
     y1 : function, optional
-        Returns the states at the end of the last piece, for the same reason, or None; called after the search.
+        Returns the exact states at the end of the last piece, or None if the motion stopped early; called after the
+        search.
 
     Raises
     ------
@@ -234,9 +235,9 @@ def _zeros_at(searcher: _Search, events: Iterable[int], t: float, y: Sequence[fl
 
 
 def _open_doubts(doubts: list[tuple[int, float]], zeros: list[EventZero], t0: float) -> list[tuple[int, float]]:
-    """Return the ``doubts``, pairs (event, time) of extrema near zero, each once and without those listed as zeros.
+    """Return the ``doubts``, each once, without those that are also listed as zeros.
 
-    A doubt is an extremum so close to zero that the error of the motion matters.
+    A doubt is a pair (event, time) of an extremum so close to zero that the error of the motion matters.
     """
     settled: dict[int, list[float]] = {}
     for zero in zeros:
@@ -284,8 +285,8 @@ def _first_sign(searcher: _Search, number: int, piece: Piece) -> int:
 def _merged(entries: list[list[float]], last: float) -> tuple[list[list[float]], list[list[float]]]:
     """Join adjacent intervals that may contain zeros; return the complete intervals, and those that may continue.
 
-    An interval may continue in the next piece of the motion if it ends at ``last``, the end of this piece, with the
-    sign 0.
+    An interval is a list [event, start, end, sign before, sign after]. It may continue in the next piece of the motion
+    if it ends at ``last``, the end of the present piece, and the sign of the formula after it is 0.
     """
     whole: list[list[float]] = []
     open_ones: dict[float, list[float]] = {}

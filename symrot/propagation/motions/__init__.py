@@ -1,1 +1,1 @@
-"""Motions: a plan with numbers and one initial state, from which the states at any time can be computed."""
+"""Motions: the equations of a scene with numbers and one initial state; they give the states at any time."""

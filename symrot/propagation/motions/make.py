@@ -15,7 +15,10 @@ __all__ = ["make_motion", "on_own_clock", "stepped_motion", "with_full_state"]
 
 
 def make_motion(plan: Plan, choice: Choice, tolerance: float) -> RestartableMotion:
-    """Return the motion of a plan by the chosen method, from the initial state of the plan's scene."""
+    """Return the motion that a plan, the equations of a scene, describes, from the initial state of the scene.
+
+    ``choice`` is the method by which the motion is computed.
+    """
     if choice.form is not None:
         choice.form.begin()
         plan = with_full_state(plan, choice.form)
@@ -31,7 +34,7 @@ def _setup(plan: Plan, choice: Choice, tolerance: float) -> Setup:
 
 
 def stepped_motion(plan: Plan, choice: Choice, tolerance: float) -> SteppedMotion:
-    """Return the motion of a plan, integrated in C by the method of ``choice``, ``taylor`` or ``dop853``."""
+    """Return the motion of a plan (equations of a scene), integrated in C by Taylor series or DOP853."""
     setup = _setup(plan, choice, tolerance)
     if choice.method == "taylor":
         library = taylor_library(plan, setup.kernel, tolerance)
@@ -42,7 +45,7 @@ def stepped_motion(plan: Plan, choice: Choice, tolerance: float) -> SteppedMotio
 
 
 def on_own_clock(plan: Plan, choice: Choice, tolerance: float) -> SteppedMotion | SciPyMotion:
-    """Return the motion of a plan, integrated by the method of ``choice`` (in C, or by SciPy).
+    """Return the motion of a plan (equations of a scene), integrated by the method of ``choice``, in C or by SciPy.
 
     Time is counted from the start of the motion if its rates depend on time.
     """
@@ -59,7 +62,10 @@ def on_own_clock(plan: Plan, choice: Choice, tolerance: float) -> SteppedMotion 
 
 
 def with_full_state(plan: Plan, form: ClosedForm) -> Plan:
-    """Return the plan without simplifications that eliminate states, for a motion in the closed form ``form``."""
+    """Return a plan (the equations of a scene) without the rules that eliminate states, for a motion in closed form.
+
+    The last rule of the result names the closed form ``form`` as the reason.
+    """
     # a closed form gives all states at no cost, since nothing has to be integrated
     structure = plan.structure.unreduced()
     rows, before = [], structure.reductions

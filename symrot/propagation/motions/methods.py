@@ -32,7 +32,7 @@ Floats = NDArray[np.float64]
 
 @final
 class ConstantMotion(RestartableMotion):
-    """A motion in which every state is constant, so that the plan leaves no state to integrate."""
+    """A motion in which every state is constant, so that its equations have no state to integrate."""
 
     def from_start(self, initial: Initial) -> "ConstantMotion":
         """Return the motion from another initial state, for which the equations must have the same form."""
@@ -190,7 +190,7 @@ class SciPyMotion(ShiftableMotion):
     def deviations(self, parameters: Sequence[float]) -> "Deviations | None":
         """Return bounds (``Deviations``) on how far the rates, with these parameters, can change near a time and state.
 
-        SciPy's steps need them so as not to miss a short pulse of a torque. Return None if no torque can have such a
+        SciPy's steps need them so as not to miss a short pulse of a torque. Return None if no torque can have a short
         pulse, or if the rates have no Taylor series.
         """
         if self.setup.deviations is None:

@@ -79,8 +79,8 @@ class Motion(ABC):
         if self.has_external_torque:
             return (
                 f"beyond t = {t!r} s the rounding of the times at which the torque is evaluated, to doubles that lie "
-                f"{math.ulp(t):.1e} s apart, may change the motion by more than the tolerance; choose t = 0 nearer to "
-                "the motion, or a larger tolerance"
+                f"{math.ulp(t):.1e} s apart, may change the motion by more than the tolerance; choose the origin of "
+                "time, t = 0, nearer to the motion, or a larger tolerance"
             )
         return rounding_warning(t)
 
@@ -224,9 +224,10 @@ class ShiftableMotion(RestartableMotion):
             raise error.later(motion.epoch) from None
 
     def _shifts(self, times: Floats) -> bool:
-        """Return whether time is counted from the start of the motion for the states at ``times`` of the scene, s.
+        """Return whether time is counted from the start of the motion to compute the states at ``times``, s.
 
-        This is so if the setup allows it, the start is not 0, and all times lie between half and twice the start.
+        This is so if ``allows_time_shift`` is true in the :class:`Setup` of the motion, the start is not 0, and all
+        times lie between half and twice the start.
         """
         if not (self.start and self.setup.allows_time_shift and len(times)):
             return False

@@ -1,4 +1,4 @@
-"""The data that all motions of one plan share, whatever their initial states.
+"""The data that all motions of one plan, the equations of a scene, share, whatever their initial states.
 
 The *rates* are the time derivatives of the states. The *epoch* is the time of the scene from which a stepper counts
 time: the zero of its *clock*. Initial states with equations of equal form have the same *structure*.
@@ -33,7 +33,10 @@ Floats = NDArray[np.float64]
 
 
 def python_rates(plan: Plan, kernel: SceneKernel) -> Callable[..., Any]:
-    """Return the rates of a plan as a NumPy function ``f(t, y, p)`` of time, states and parameters."""
+    """Return the rates (time derivatives of the states y) of a plan's equations as a NumPy function ``f(t, y, p)``.
+
+    The arguments are time, states and parameters.
+    """
     from symrot.codegen.numpy_kernel import load_numpy_kernel
 
     function = load_numpy_kernel(kernel.rates)
@@ -43,7 +46,7 @@ def python_rates(plan: Plan, kernel: SceneKernel) -> Callable[..., Any]:
 @final
 @dataclass(frozen=True, eq=False)
 class Setup:
-    """The data that all motions of one plan share, whatever their initial states: method, kernel, numbers of the scene.
+    """The data that all motions of one plan, the equations of a scene, share: method, kernel, numbers of the scene.
 
     Attributes
     ----------
@@ -82,7 +85,7 @@ class Setup:
 
     @cached_property
     def kernel(self) -> SceneKernel:
-        """The kernel of the plan, the code that computes rates and output quantities; loaded on first use."""
+        """The kernel of the plan: generated code that computes rates and output quantities; loaded on first use."""
         return self.load_kernel()
 
     @cached_property
@@ -97,9 +100,9 @@ class Setup:
 
     @cached_property
     def quantity_binding(self) -> Binding:
-        """Function from a plan to the parameters of the output quantities, each as a pair of doubles.
+        """Function that takes a plan with an initial state and returns the parameters of the output quantities.
 
-        The sum of a pair is right to 31 digits.
+        Each parameter is two consecutive doubles, whose sum is right to 31 digits.
         """
         return Binding(self.kernel.quantity_parameters, self.plan, two_doubles)
 
@@ -110,10 +113,10 @@ class Setup:
 
     @cached_property
     def deviations(self) -> "Callable[[Mapping[str, float]], Deviations] | None":
-        """Function that makes bounds (``Deviations``) from the values of the rates' parameters, by name.
+        """Function that makes bounds (``Deviations``) from a map of the rates' parameters, name to value.
 
         The bounds say how far the rates can change near a time and state; SciPy's steps need them so as not to miss a
-        short pulse of a torque. None if no torque can have such a pulse, or if the rates have no Taylor series.
+        short pulse of a torque. None if no torque can have a short pulse, or if the rates have no Taylor series.
         """
         return formula_deviations(self.plan, self.kernel)
 
@@ -132,7 +135,7 @@ class Setup:
 
 @final
 class SteppedSetup:
-    """Setup shared by all motions of one plan that are integrated in C, with the compiled library."""
+    """The data that all motions of one plan in C share: a :class:`Setup` and the compiled library."""
 
     def __init__(self, setup: Setup, library: Path) -> None:
         self.setup, self.library = setup, library

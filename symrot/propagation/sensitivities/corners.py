@@ -27,10 +27,10 @@ Slopes = Mapping[str, float]
 
 
 def places_within(begin: float, times: Floats) -> Floats:
-    """Return arbitrary times at which :func:`rests_at_corner` examines a motion from ``begin``, s, to all ``times``.
+    """Return the times at which :func:`rests_at_corner` examines a motion from ``begin``, s, to all ``times``.
 
-    They are four times from ``begin`` to the smallest of ``times`` and four from ``begin`` to the largest; a smallest
-    or largest time that equals ``begin`` is left out.
+    There are four arbitrary times between ``begin`` and the smallest of ``times``, and four between ``begin`` and the
+    largest. A smallest or largest time that equals ``begin`` is left out.
     """
     ends = {float(times.min()), float(times.max())} - {begin} if len(times) else set[float]()
     return np.array([begin + part * (end - begin) for end in sorted(ends) for part in PLACES])
@@ -41,8 +41,8 @@ def rests_at_corner(
 ) -> bool:
     """Return whether a motion stays where its rates have no derivatives by states or parameters.
 
-    This is examined at n arbitrary times. A motion that only passes such a point does so at a single time, which the
-    arbitrary times miss.
+    The rates are examined at n arbitrary times. A motion that only passes a point without derivatives is there at a
+    single time, which the arbitrary times miss.
 
     Parameters
     ----------

@@ -68,10 +68,10 @@ class Crossings:
         self._last: tuple[Interval, Instant, dict[str, Flip], bool] | None = None  # the last jump of the rates
 
     def across(self, before: Interval, after: Interval, by: Floats) -> Floats:
-        """Return the derivatives of the states after a switch between two intervals; ``by`` are those before, (7, m).
+        """Return the derivatives of the states after a switch between two intervals, shape (7, m).
 
-        The derivatives of the time of the switch are appended to :attr:`switchings`. Raise PropagationError if the
-        derivatives after the switch do not exist.
+        ``by`` has the derivatives before the switch. The derivatives of the time of the switch are appended to
+        :attr:`switchings`. Raise PropagationError if the derivatives after the switch do not exist.
         """
         guards = self.guards
         changed = [
@@ -109,7 +109,7 @@ class Crossings:
             rows[mode] = np.full(len(by.T), np.nan) if grazes else 0.0 - guard.change(by) / speed
         if not jumps and float(np.abs(later - f).max()) > STEEP * float(np.abs([f, later]).max()):
             names_of = " and ".join(map(guards.name, [*changed, *sorted(held), *released]))
-            raise guards.refusal(before.end, f"the torque jumps where no argument is zero in {names_of}")
+            raise guards.refusal(before.end, f"the torque jumps although no argument of {names_of} is zero")
         first = next(iter(jumps), None)
         if first is not None:
             flips = {mode: Flip(after.modes[mode], rows[mode], jumps[mode].states) for mode in jumps}
@@ -186,10 +186,11 @@ class Crossings:
         return np.asarray(jumps.T @ np.array([flips[group[0]].time for group in groups]))
 
     def _append_switches(self, instant: Instant, rows: Mapping[str, Floats], others: Floats | None) -> None:
-        """Append the switches at an instant to :attr:`switchings`, with the derivatives of their time by the variables.
+        """Append the switches at an instant to :attr:`switchings`, with the m derivatives of their time.
 
-        ``rows`` has these m derivatives for each function, named by its mode; ``others`` are those for any other
-        function, or None if they are not known (then NaN).
+        ``rows`` is a map from the mode of a switching function (the number that replaces the function in formulas) to
+        its m derivatives. ``others`` are the derivatives for every function that is not in ``rows``; None stands for
+        NaN.
         """
         unknown = np.full(len(self.guards.parameter_slopes.columns), np.nan)
         for (t, label), how in self._changes.items():
@@ -201,7 +202,11 @@ class Crossings:
 
 
 def jumps_at_end(guards: Guards, interval: Interval) -> NDArray[np.bool_]:
-    """Return, for each of the m variables, whether the derivatives by it may jump exactly at the end of the motion."""
+    """Return, for each of the m variables, whether the derivatives of the states by it may jump at the end of a motion.
+
+    They may if a function such as sign switches exactly there. ``interval`` is the last smooth interval of the motion;
+    the variables are those of ``guards``.
+    """
     jumps = np.zeros(len(guards.parameter_slopes.columns), dtype=np.bool_)
     f = guards.rates(interval, interval.stop, interval.last)
     for guard, on in zip(interval.regime.guards, interval.regime.active(interval.modes), strict=True):

@@ -51,16 +51,22 @@ class Gradient(NamedTuple):
         return self.time + float(self.states @ rates)
 
     def size(self, rates: Floats) -> float:
-        """Return the sum of the absolute values of the terms that :meth:`along` adds, as a scale for its result."""
+        """Return the sum of the absolute values of the products that :meth:`along` adds, as a scale for its result.
+
+        These are the derivative by time, and for each state the derivative by the state times the rate of the state.
+        """
         return abs(self.time) + float(np.abs(self.states) @ np.abs(rates))
 
     def change(self, slopes_of_states: Floats) -> Floats:
-        """Return the m derivatives of the formula by the variables at fixed time, from those of the states, (7, m)."""
+        """Return the m total derivatives of the formula by the variables, on which the states depend, too.
+
+        ``slopes_of_states`` has the derivatives of the states, shape (7, m); the time is fixed.
+        """
         return np.asarray(self.states @ slopes_of_states + self.variables)
 
 
 class Guards:
-    """The guards (arguments of sign, abs, ..) and rates in the intervals of a motion, evaluated with their derivatives.
+    """The guards (arguments of sign, abs, ..) and rates of a motion between its switches, with their derivatives.
 
     Parameters
     ----------
@@ -83,9 +89,10 @@ class Guards:
         self._require_settled()
 
     def _require_settled(self) -> None:
-        """Raise InputError if a variable changes an argument that is at a jump or kink of its function.
+        """Raise InputError if a variable moves the argument of a function away from a jump or kink of the function.
 
-        Only functions that never switch, since their arguments are constant, are examined.
+        Only arguments without time and states are examined, such as that of ``sign(c - 1)`` for c = 1: the function
+        never switches during the motion, but a change of the constant c changes its value.
         """
         modes = self.system.initial_modes()
         constants = {**self._constants, **{name: Fraction(mode) for name, mode in modes.items()}}
@@ -102,11 +109,14 @@ class Guards:
         return self._by_name[mode].label
 
     def is_floor(self, mode: str) -> bool:
-        """Return whether ``mode`` stands for floor or mod, which switch where x minus the floor of x is 0 or 1."""
+        """Return whether ``mode``, the number that replaces a function in formulas, stands for floor or mod.
+
+        With its present value n, floor(x) switches where x - n is 0 or 1.
+        """
         return self._by_name[mode].kind == "floor"
 
     def is_sign(self, mode: str) -> bool:
-        """Return whether ``mode`` stands for a sign, as of x in sign(x), abs(x) or step(x), not for floor or mod."""
+        """Return whether ``mode`` stands for a function of the sign of x, such as sign(x), abs(x) or step(x)."""
         return self._by_name[mode].kind == "sign"
 
     def is_continuous(self, mode: str) -> bool:
@@ -114,9 +124,10 @@ class Guards:
         return is_continuous(self._by_name[mode])
 
     def twins(self, mode: str) -> list[tuple[str, int]]:
-        """Return the functions that switch together with ``mode``, as pairs (mode, 1 or -1), with ``mode`` itself.
+        """Return the functions that switch together with the function of ``mode``, as pairs (mode, 1 or -1).
 
-        A mode is the number that stands for a function such as sign(x); 1 or -1 is its sign relative to the first pair.
+        A mode is the number that stands for a function such as sign(x). The list includes the pair of ``mode`` itself;
+        1 or -1 is the sign of the argument relative to the argument of the first pair.
         """
         return self.system.twins.get(mode, [(mode, 1)])
 
@@ -130,17 +141,17 @@ class Guards:
     # ------------------------------------------------------------------------------------------------- formulas
 
     def program(self, interval: Interval) -> tuple[Program, Parameters]:
-        """Return the rates of an interval as a program, with the formulas of their parameters."""
+        """Return the rates of the states in an interval of the motion: a program, and formulas of its parameters."""
         key = id(interval.regime)
         if key not in self._rates:
             self._rates[key] = rates_of(interval.regime.plan)
         return self._rates[key]
 
     def bound(self, parameters: Parameters, interval: Interval, kind: str) -> tuple[dict[str, float], Rows]:
-        """Return two dicts for the equations of an interval of the motion: values of parameters, and their derivatives.
+        """Return two dicts for the equations in an interval: the values of ``parameters``, and their derivatives.
 
-        The keys are names of the ``parameters``. The second dict has the m derivatives by the variables of each
-        parameter that depends on one. ``kind`` names the equations: ``"rates"``, ``"guards"`` or ``"quantities"``.
+        The keys are names of parameters. The second dict has only the parameters that depend on a variable, each with
+        its m derivatives by the variables. ``kind`` names the equations: ``"rates"``, ``"guards"`` or ``"quantities"``.
         """
         timed = any(EPOCH in names(formula) for _, formula in parameters)
         key = kind, id(interval.regime), tuple(interval.modes.values()), interval.zero if timed else None
@@ -153,7 +164,7 @@ class Guards:
         return {name: value for name, (value,) in self._slopes[key].items()}, self._slopes[(*key, "by")]
 
     def _duals(self, parameters: Parameters, interval: Interval, t: float, y: Floats, kind: str) -> dict[str, Any]:
-        """Return the inputs of formulas as dual numbers, by name; the derivatives are by time, states and variables."""
+        """Return the inputs of formulas, name -> dual number, with derivatives by time, states and variables."""
         values, rows = self.bound(parameters, interval, kind)
         inputs: dict[str, Any] = {name: float(mode) for name, mode in interval.modes.items()}
         for name, value in values.items():
@@ -171,7 +182,7 @@ class Guards:
     def guard(self, interval: Interval, mode: str, t: float, y: Floats) -> Gradient:
         """Return the argument of the function (sign, abs, ..) for which ``mode`` stands, with its derivatives.
 
-        For floor(x) it is x minus the present floor.
+        For floor(x) the result is x minus the present floor.
         """
         inputs = self._duals(interval.regime.parameters, interval, t, y, "guards")
         return self._gradient(evaluate(interval.regime.formulas[mode], inputs, DUALS, float))
@@ -179,7 +190,7 @@ class Guards:
     def held_mode(self, interval: Interval, mode: str) -> Gradient:
         """Return the value of a sign(x) whose x is held at zero, at the end of an interval, with its derivatives.
 
-        It lies between -1 and 1 and keeps x at zero; ``mode`` is its name.
+        The value lies between -1 and 1 and keeps x at zero; ``mode`` is its name in formulas.
         """
         quantities, parameters = interval.regime.quantities, interval.regime.quantity_parameters
         inputs = self._duals(parameters, interval, interval.stop, interval.last, "quantities")

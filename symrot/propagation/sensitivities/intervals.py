@@ -86,9 +86,10 @@ def smooth_intervals(motion: SwitchedMotion, end: float) -> tuple[list[Interval]
 
 
 def _without_returns(motion: SwitchedMotion, intervals: list[Interval], length: float) -> list[Interval]:
-    """Return the intervals without those that only rounding errors cause, very short ones before a sliding motion.
+    """Return the intervals without the very short ones that only rounding errors cause, just before a sliding motion.
 
-    In them the argument of a switching function passes zero, and it is held at zero from their end on.
+    At the start of such an interval, the argument of a switching function (sign, abs, ..) passes zero; from the end of
+    the interval on, the argument is held at zero.
     """
     result = intervals[:1]
     for current, following in pairwise([*intervals[1:], None]):

@@ -36,7 +36,10 @@ TOLERANCE = 1e-16
 
 
 def rates_of(plan: Plan) -> tuple[Program, Parameters]:
-    """Return the rates (time derivatives of the states) of a plan as a program, with their parameters."""
+    """Return the rates (time derivatives of the states) in the equations of a scene's plan, as a program.
+
+    The second result has the parameters of the program, pairs (name, formula).
+    """
     key = f"rates alone\n{kernel_key(plan)}"
     # a clock counts time from an epoch, which is a further constant in the formulas
     saved = library.fetch(key)
@@ -119,9 +122,9 @@ def needs_bounds(plan: Plan) -> bool:
 
 
 class MotionLibrary:
-    """The compiled code that integrates one motion with its derivatives by the variables of ``depends``.
+    """The compiled code that integrates one motion with its derivatives by initial values and constants.
 
-    The arguments are those of :func:`variation_source`.
+    The arguments ``plan``, ``rates`` and ``depends`` are those of :func:`variation_source`.
     """
 
     def __init__(self, plan: Plan, rates: Program, depends: Sequence[Sequence[str]]) -> None:
@@ -178,6 +181,6 @@ class MotionLibrary:
             except PropagationError:
                 raise error from None
             if rests_at_corner(self._rates, self._depends, p, between, samples[len(times) :]):
-                reason = "the torque has no derivatives there, where a root such as |omega| stays at zero"
+                reason = "the torque is not differentiable there, since a square root such as |omega| stays at zero"
                 raise IntegrationStopped(begin, reason) from None
         return samples[: len(times)]

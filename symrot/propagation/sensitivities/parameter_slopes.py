@@ -33,23 +33,35 @@ class ParameterSlopes:
         self._changes = [self._changes_of(column) for column in self.columns]
 
     def with_changes(self, changes: Sequence[Mapping[str, Fraction]]) -> Self:
-        """Return a copy with more derivatives of constants: ``changes[k]`` has those by variable k, by name."""
+        """Return a copy with more derivatives of constants.
+
+        ``changes[k]`` is a map from the name of a constant to its derivative by variable number k.
+        """
         other = copy(self)
         other._changes = [{**own, **more} for own, more in zip(self._changes, changes, strict=True)]
         return other
 
     def _changes_of(self, column: Column) -> Mapping[str, Fraction]:
-        """Return the derivatives by a variable of those constants of the equations that depend on it."""
+        """Return the derivatives of the constants in the equations by the variable of ``column``.
+
+        The result is a map from name to derivative, without the constants that do not depend on the variable.
+        """
         if not column.constants:
             return {}
         return difference(self.scene, column.variable, lambda other: constants_of(other, self.structure))
 
     def depends(self, parameters: Parameters, column: int) -> list[str]:
-        """Return the names of the parameters, pairs (name, formula), that depend on the variable number ``column``."""
+        """Return the names of those ``parameters`` that depend on the variable number ``column``.
+
+        A parameter is a pair (name, formula).
+        """
         return [name for name, formula in parameters if names(formula) & self._changes[column].keys()]
 
     def slopes_of(self, parameters: Parameters, constants: Mapping[str, Fraction]) -> Rows:
-        """Return, by name, the m derivatives of each parameter that depends on at least one of the variables."""
+        """Return a map from the name of a parameter to its m derivatives by the variables.
+
+        Parameters that depend on none of the variables are left out.
+        """
         rows: dict[str, list[float]] = {}
         rational = {name for name, formula in parameters if not _has_calls(formula)}
         moved = set[str]().union(*self._changes)

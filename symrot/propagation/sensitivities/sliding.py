@@ -1,4 +1,4 @@
-"""Guards that stay at zero: those that a sliding motion holds there, and those that rest at zero by chance.
+"""Guards that stay at zero, because a sliding motion holds them there or because they rest there by chance.
 
 A *guard* is the argument of a switching function (sign, abs, ..); its *mode* is the number that replaces the function
 in formulas. A guard is *held* if the equations determine the mode by the condition that the guard stays at zero.
@@ -20,9 +20,10 @@ Floats = NDArray[np.float64]
 
 
 def beside(guards: Guards, interval: Interval, signs: Mapping[str, int]) -> Interval:
-    """Return a copy of an interval in which some functions sign(x), with x held at zero, have the values ``signs``.
+    """Return a copy of an interval of the motion in which some held functions sign(x) have fixed values.
 
-    The rates of the copy are those on one side of the jump at which the motion slides.
+    In the interval itself x is held at zero. ``signs`` is a map from the modes of these functions to 1 or -1. The rates
+    of the copy are those on one side of the jump at x = 0, along which the motion slides.
     """
     twins = guards.system.twins
     modes = {**interval.modes, **{twin: own * sign for mode, sign in signs.items() for twin, own in twins[mode]}}
@@ -31,9 +32,9 @@ def beside(guards: Guards, interval: Interval, signs: Mapping[str, int]) -> Inte
 
 
 def hold_at_rest(guards: Guards, interval: Interval) -> None:
-    """Give an interval equations that hold at zero, where possible, the guards that stay at zero in it.
+    """Change the equations of an interval so that they hold the guards that stay at zero in the interval.
 
-    A guard is the argument of sign, abs, .. The modes of guards that cannot be held are appended to
+    A guard is the argument of sign, abs, .. The modes of guards that the equations cannot hold are appended to
     ``interval.resting``. A guard is left alone if the rates and their derivatives are the same on both sides of its
     zero.
     """
@@ -59,11 +60,11 @@ def hold_at_rest(guards: Guards, interval: Interval) -> None:
 def refuse_resting(
     guards: Guards, interval: Interval, integrate: Callable[[Interval, Floats], tuple[Floats, Floats]]
 ) -> None:
-    """Raise PropagationError if a variable moves an argument away from zero, where its function has a jump or kink.
+    """Raise PropagationError if a variable moves a guard of ``interval.resting`` away from zero.
 
-    The arguments are those of the functions in ``interval.resting``, which stay at zero.
-
-    ``integrate`` takes an interval and times, and returns the states and the derivatives at these times.
+    These guards, arguments of functions such as sign, stay at zero in the interval, though the equations do not hold
+    them there. If a guard is moved, its function jumps or bends, and the motion has no derivatives. ``integrate`` takes
+    an interval and times, and returns the states and their derivatives at these times.
     """
     for mode in interval.resting:
         places = list(interval.places())
@@ -78,9 +79,9 @@ def rests(guards: Guards, interval: Interval, mode: str) -> bool:
 
 
 def _is_smooth_at(guards: Guards, interval: Interval, mode: str) -> bool:
-    """Return whether the rates and their derivatives are the same for both signs of an argument that stays at zero.
+    """Return whether the rates and their derivatives are the same for both signs of a guard that stays at zero.
 
-    It is the argument of the function (sign, abs, ..) for which ``mode`` stands.
+    The guard is the argument of the function (sign, abs, ..) for which ``mode`` stands.
     """
     twins = [twin for twin, _ in guards.twins(mode)]
     for t, y in interval.places():
@@ -96,10 +97,11 @@ def _is_smooth_at(guards: Guards, interval: Interval, mode: str) -> bool:
 
 
 def require_one_surface(guards: Guards, interval: Interval, mode: str, t: float, y: Floats) -> None:
-    """Raise PropagationError if another function switches together with a sign or abs here, but only by chance.
+    """Raise PropagationError if a sign or abs and another function switch together, but only by chance.
 
-    A change of time, state or variable then makes their arguments zero at different times, so that a motion cannot
-    slide along both jumps. ``mode`` is the name of the number that replaces the first function in formulas.
+    The first function is that of ``mode``, the number that replaces it in formulas. Example: sign(omega_3 - c) and
+    sign(omega_3 - d) with c = d. After a change of time, state or variable the arguments are zero at different times,
+    and a motion cannot slide along both jumps.
     """
     guard = guards.guard(interval, mode, t, y)
     own = np.array([guard.time, *guard.states, *guard.variables])
@@ -109,4 +111,6 @@ def require_one_surface(guards: Guards, interval: Interval, mode: str, t: float,
         other = guards.guard(interval, twin, t, y)
         row = np.array([other.time, *other.states, *other.variables])
         if np.abs(own * (row @ own) - row * (own @ own)).max() > ALIKE * (own @ own) * np.abs(row).max():
-            raise guards.refusal(interval.zero.after(t), f"{guards.name(mode)} and {guards.name(twin)} switch at once")
+            raise guards.refusal(
+                interval.zero.after(t), f"{guards.name(mode)} and {guards.name(twin)} switch at the same time"
+            )

@@ -1,6 +1,7 @@
-"""The derivatives just after the start of a motion, where guards may be zero or held at zero.
+"""The derivatives of the states just after the start of a motion, whose guards may be zero there.
 
-A *guard* is the argument of a switching function (sign, abs, ..).
+A *guard* is the argument of a switching function (sign, abs, ..). The equations may hold a guard at zero from the start
+on, as friction holds a body at rest. The derivatives are those by variables: initial values and constants.
 """
 
 from dataclasses import replace
@@ -19,11 +20,11 @@ Floats = NDArray[np.float64]
 
 
 def from_start(guards: Guards, interval: Interval, by: Floats) -> Floats:
-    """Return the derivatives just after the start of a motion, for the derivatives ``by`` at the start, shape (7, m).
+    """Return the derivatives of the seven states by the m variables just after the start of a motion, shape (7, m).
 
-    They differ from ``by`` if friction, for example, holds a component of omega at zero from the start on: a component
-    that starts near zero comes to zero at once, and its derivatives become zero. Raise PropagationError if there are no
-    derivatives.
+    ``by`` has the derivatives at the start. The result differs from ``by`` if friction, for example, holds a component
+    of omega at zero from the start on: a component that starts near zero comes to zero at once, and its derivatives
+    become zero. Raise PropagationError if the derivatives do not exist.
     """
     f = guards.rates(interval, interval.start, interval.first)
     for mode in interval.regime.formulas:
@@ -56,7 +57,7 @@ def from_start(guards: Guards, interval: Interval, by: Floats) -> Floats:
     size = ALIKE * max(float(np.abs(rates).max()) for rates in corners.values())
     for signs, rates in corners.items():
         if np.abs(first + jumps @ (np.array(signs) - 1.0) - rates).max() > size:
-            raise guards.refusal(interval.begin, f"{' and '.join(map(guards.name, held))} switch at once")
+            raise guards.refusal(interval.begin, f"{' and '.join(map(guards.name, held))} switch at the same time")
     return np.asarray(
         by - jumps @ np.linalg.solve(np.array([gradient.states for gradient in gradients]) @ jumps, changes)
     )
@@ -80,6 +81,6 @@ def _require_constant(guards: Guards, interval: Interval, mode: str, other: int,
     if not np.array_equal(beyond, f):
         raise guards.refusal(
             interval.begin,
-            f"the motion starts where {guards.name(mode)} switches, and a change of {variable} to one side or to "
-            "the other has different effects",
+            f"the motion starts where {guards.name(mode)} switches, so that a larger and a smaller {variable} have "
+            "different effects; start it slightly to one side",
         )

@@ -81,9 +81,10 @@ class SwitchedEquations:
         return tuple(every)
 
     def switchings(self, scene: Scene, times: Floats) -> tuple[SwitchSlopes, ...]:
-        """Return the switches of the motion on the way to ``times``, s, each with the derivatives of its time.
+        """Return the switches of sign, abs, .. on the way to ``times``, s, each with the derivatives of its time.
 
-        These are the m derivatives by the variables of :attr:`keys`.
+        The derivatives are those by the m variables that :attr:`keys` names. Switches after the initial time come
+        first, then those before it.
         """
         begin, every = float(scene.span.start), []
         for side in (1.0, -1.0):

@@ -68,7 +68,11 @@ def _formula(axis: int, tau: str) -> str:
 
 
 def _with_formulas(scene: Scene) -> Scene:
-    """Return a scene in which a torque with formulas, whose coefficients are all 0, replaces the table."""
+    """Return a scene in which a torque with formulas replaces the torque given by a table of samples.
+
+    The formulas are cubic polynomials of time. Their coefficients, the constants :data:`COEFFICIENTS`, are 0 in this
+    scene; the values for an interval of the table are inserted when the motion is computed.
+    """
     assert scene.table is not None
     values = dict.fromkeys(COEFFICIENTS, Fraction(0))
     # the clock of an interval shows 0 at its start; if other torques depend on time, its epoch is a constant
@@ -161,10 +165,11 @@ class TableEquations:
     def _in_piece(
         self, k: int, y: Floats, by: Floats, begin: float, times: Floats, units: list[float]
     ) -> tuple[Floats, Floats]:
-        """Return states and derivatives, as :meth:`_one_way` does, at times in interval k of the table.
+        """Return the states at n times in interval k of the torque's table, (n, 7), and their derivatives, (n, 7, m).
 
-        ``units`` has for each variable the power of two by which its derivatives are multiplied during integration; the
-        list is changed in place to the units used last.
+        ``y`` and ``by`` are states and derivatives at the time ``begin``, s; the derivatives are those by the m
+        variables. ``units`` has for each variable the power of two by which its derivatives are multiplied during
+        integration; the list is changed in place to the units used last.
         """
         values, rows = self._numbers(k)
         knot = float(self._pieces.edges[k])
@@ -276,8 +281,8 @@ def _sample_of(scene: Scene, variable: Variable) -> tuple[int, int] | None:
 def _replaced(variable: Variable, sample: tuple[int, int] | None) -> Variable:
     """Return ``variable`` as a variable of the scene in which formulas replace the table of samples.
 
-    If it is a sample of the table (``sample`` is not None), it changes nothing there: how the coefficients of the
-    formulas depend on the sample is added elsewhere.
+    A sample of the table (``sample`` is not None) does not occur in that scene, so that a change of the returned
+    variable does not change the scene. How a sample changes the coefficients of the formulas is computed elsewhere.
     """
     moved = variable.moved
     if moved is None:

@@ -40,9 +40,10 @@ def refuse_touching(guards: Guards, interval: Interval) -> None:
 
 
 def _touching(guards: Guards, interval: Interval, mode: str) -> float | None:
-    """Return the first time, s after ``interval.zero``, at which an argument touches zero in an interval, or None.
+    """Return the first time, s after ``interval.zero``, at which the argument of a function touches zero.
 
-    It is the argument of the function (sign, floor, ..) for which ``mode`` stands; None: it does not touch zero.
+    The function (sign, floor, ..) is that for which ``mode`` stands; the argument of floor touches whole numbers.
+    Return None if the argument does not touch zero.
     """
     values, _ = guards.bound(interval.regime.parameters, interval, "guards")
     constants = {**{name: float(value) for name, value in interval.modes.items()}, **values}

@@ -96,7 +96,9 @@ class Variable:
 def require_formulas(scene: Scene) -> None:
     """Raise InputError if a torque of a scene is given by samples, which have no derivatives."""
     if scene.table is not None:
-        raise InputError(f"{scene.name}: expected torques with formulas for sensitivities, got a torque of kind table")
+        raise InputError(
+            f"{scene.name}: expected torques with formulas, which sensitivities need, got a torque of kind table"
+        )
 
 
 def read_variables(scene: Scene, keys: Sequence[str]) -> list[Variable]:
@@ -199,9 +201,10 @@ Numbers = Mapping[str, Fraction]
 
 
 def difference(scene: Scene, variable: Variable, numbers: Callable[[Scene], Numbers]) -> dict[str, Fraction]:
-    """Return the derivatives, by one variable, of those exact numbers of a scene that depend on it.
+    """Return the derivatives of exact numbers of a scene by one variable, as a map from name to derivative.
 
-    For the mass of a unit sphere and its moments of inertia: ``{"I_xx": Fraction(2, 5), ..}``.
+    Numbers that do not depend on the variable are left out. For the mass of a unit sphere and its moments of inertia:
+    ``{"I_xx": Fraction(2, 5), ..}``.
 
     Parameters
     ----------
@@ -252,7 +255,7 @@ def slopes(values: Callable[[Fraction], Numbers], step: Fraction, name: str) -> 
 
 
 class _Differences:
-    """Difference quotients of numbers by a change of a variable, for steps of several sizes."""
+    """Difference quotients of numbers, such as moments of inertia, by one variable, for several step sizes."""
 
     # weights of second order at places in steps: central, then to the right and to the left, for example where the mass
     # would become negative
@@ -285,7 +288,7 @@ class _Differences:
         return self._points[place]
 
     def slope(self, each: str) -> Fraction | None:
-        """Return the derivative, by the variable, of the number with the name ``each``; None if it has none."""
+        """Return the derivative of the number named ``each`` by the variable; None if it does not exist."""
         first, second = self._quotient(each, 1), self._quotient(each, 2)
         if self._bends(each):
             return None
@@ -300,10 +303,10 @@ class _Differences:
         return total / (size * self._step)
 
     def _bends(self, each: str) -> bool:
-        """Return whether the number with the name ``each`` has a kink at the variable's present value.
+        """Return whether the number named ``each`` has a kink at the present value of the variable.
 
         At a kink, the second difference is proportional to the step, elsewhere to the square of the step. The result is
-        False if only values on one side of the present one are valid.
+        False if only values of the variable on one side of the present one are valid.
         """
         if self._weights is not self.SCHEMES[0]:
             return False

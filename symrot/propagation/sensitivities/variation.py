@@ -65,7 +65,8 @@ TRIES = 4
 class Column:
     """The dependence of a scene on one variable, an initial value or a constant.
 
-    ``start`` has the derivatives of the initial state by it, ``constants`` those of the constants of the equations.
+    ``start`` has the derivatives of the initial state by the variable, ``constants`` the derivatives of the constants
+    in the equations.
     """
 
     def __init__(self, scene: Scene, variable: Variable, general: Structure) -> None:
@@ -122,9 +123,10 @@ def columns_of(scene: Scene, variables: Sequence[Variable]) -> list[Column]:
 
 
 def structure_of(scene: Scene, columns: Sequence[Column], varying: Collection[str] = ()) -> Structure:
-    """Return the structure of the equations for derivatives by the variables of ``columns``.
+    """Return the structure of the equations for derivatives by variables: which constants are zero, equal or free.
 
-    In it the constants that these variables change, and the constants ``varying``, are parameters, not numbers.
+    Free are the constants that a change of a variable changes, and the constants ``varying``: they remain parameters in
+    the equations. ``columns`` has one :class:`Column` for each variable.
     """
     # They become parameters even if they are now zero or one, since derivatives by them are needed; so do constants
     # that differ between the motions of an ensemble (varying). Other zeros and ones simplify the equations.
@@ -218,7 +220,7 @@ class SmoothEquations:
         return self._parts, 0.0
 
     def _parts_from(self, epoch: float) -> "list[_Part]":
-        """Return the equations with time counted from an epoch, s; those for the last epoch are used again."""
+        """Return the equations with time counted from an epoch, s; the equations for the last epoch are used again."""
         if epoch != self._moved[0]:
             self._moved = (epoch, _parts(self.scene, self._columns, epoch))
         return self._moved[1]
@@ -401,9 +403,10 @@ def fitting_unit(unit: float, by: Floats) -> float:
 
 
 def small_rotation(q: Floats, slopes: Floats) -> Floats:
-    """Return derivatives of the attitude as small rotations about the body axes: ``2 * conjugate(q) * dq``.
+    """Return derivatives of the attitude as small rotations about the body axes: ``2 * conjugate(q) * slopes``.
 
-    Shapes: q (n, 4), dq (n, 4, columns), result (n, 3, columns).
+    ``slopes`` are the derivatives of the quaternions ``q`` by variables. Shapes: q (n, 4), slopes (n, 4, m), result (n,
+    3, m).
     """
     scalar, vector = q[:, :1, None], q[:, 1:, None]
     along, across = slopes[:, :1], slopes[:, 1:]

@@ -75,7 +75,7 @@ class Walk:
         return same and self.side * (end - begin) > 0.0 and self.side * (self.end - end) >= 0.0
 
     def _differentiate(self) -> None:
-        """Compute the derivatives at the ends of all intervals."""
+        """Compute the derivatives of the states by the variables at the start and the end of each interval."""
         by = np.array([column.start_from(self.scene.initial) for column in self.parameter_slopes.columns]).T
         guards, previous = self.guards, None
         for interval in self.intervals:

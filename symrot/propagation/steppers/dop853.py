@@ -44,16 +44,14 @@ MIDDLE_REACH = 3  # index of the first disc to try in symrot.codegen.enclosure.t
 Clock = Callable[[float], tuple[PathLike, Sequence[float]]]
 """Function that takes an epoch, s, and returns a kernel's library and the values of its parameters for this epoch.
 
-The rates of this kernel take the time since the epoch.
-"""
+With these values the rates of the kernel count time from the epoch."""
 
 FAR = 1e4  # steps from the epoch: farther on, the time would be rounded to more than 1e-12 of a step
 WINDOW = 2048
-"""Number of steps after which the epoch, from which the rates count time, is moved to the present time.
+"""Number of steps after which the epoch, the zero of the time t in the rates, is moved to the present time.
 
 Phases ``a*t`` in the rates then stay below some 1e3 rad, and the moves cost a few per cent of the time. Phase errors
-between two moves are alike and add up: with 8192 steps they were five times as large.
-"""
+between two moves are alike and add up: with 8192 steps they were five times as large."""
 
 
 def step_tolerance(tolerance: float) -> tuple[float, float]:

@@ -77,7 +77,7 @@ def why_stuck(reason: str, t: float, t0: float, stop: float) -> str:
     apart = math.ulp(t)
     if abs(stop - t0) > MANY_TICKS * apart:
         return reason
-    advice = "choose t = 0 nearer to the motion"
+    advice = "choose the origin of time, t = 0, nearer to the motion"
     return f"the next steps are too short for doubles, which lie {apart:.3g} s apart at this time; {advice}"
 
 

@@ -1,4 +1,4 @@
-"""The sum of the rounding errors that formulas of the time cause in the torques of a motion.
+"""The sum of the rounding errors that formulas with the time, such as ``t**2 - 25``, cause in the torques of a motion.
 
 Each direction of time, after and before the start, has its own sum.
 """

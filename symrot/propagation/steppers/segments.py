@@ -16,12 +16,12 @@ SLIVER = 2.0**-100  # part of a segment: so near its end, every formula has the 
 
 
 class Segment(NamedTuple):
-    """Interval between switching times, from ``start`` to ``stop``, s.
+    """Interval of time from ``start`` to ``stop``, s, between two switching times or ends of the motion.
 
-    Torques are evaluated at ``first`` and ``last``: just inside a switching time, otherwise at the ends.
+    Torques are evaluated from ``first`` to ``last``: these are the ends themselves or, at a switching time, where a
+    torque may jump, times just inside the interval.
     """
 
-    # first and last lie just inside a switching time, where a torque may jump
     start: float
     stop: float
     first: float
@@ -61,7 +61,10 @@ def _inside(edge: float, other: float) -> float:
 
 
 def split_at(times: Floats, t0: float) -> Iterator[NDArray[np.intp]]:
-    """Yield the indices of the times from t0 on, then of those before, if any, each sorted by distance from t0."""
+    """Yield the indices of the times from t0 on, then of the times before t0, each sorted by distance from t0.
+
+    An empty array is left out.
+    """
     # for the times 3, 0, 2 and t0 = 1: [2, 0], then [1]; an empty array is left out
     order = np.argsort(times, kind="stable")
     first_after = int(np.searchsorted(times[order], t0))

@@ -74,8 +74,8 @@ def rounding_warning(t: float) -> str:
     t is a time of ``Stats.rounded_beyond``.
     """
     return (
-        f"beyond t = {t!r} s the rounding of the torque, a formula of the time, may change the motion by more than "
-        "the tolerance; choose a larger tolerance"
+        f"beyond t = {t!r} s the rounding of the torque, a formula that contains the time, may change the motion by "
+        "more than the tolerance; choose a larger tolerance"
     )
 
 

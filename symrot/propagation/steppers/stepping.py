@@ -185,7 +185,7 @@ class Stepper(ABC):
 
     @abstractmethod
     def enter(self, run: Run, segment: Segment, allowed: float) -> None:
-        """Prepare a run for a segment: set those fields of its C struct that only this stepper uses."""
+        """Prepare a run for a segment: set the fields of its C struct that only this stepper uses."""
 
     @staticmethod
     @abstractmethod
@@ -441,10 +441,10 @@ class Integration:
     def advance(self, run: Run, times: int | None, count: int, states: int | None, rows: int | None, room: int) -> int:
         """Call the stepper in C once and return its status: DONE at the end of the segment; otherwise call again.
 
-        Raise IntegrationStopped if it cannot continue.
+        ``times``, ``states`` and ``rows`` are the addresses of ``count`` sample times, of an array for their states,
+        and of an array for the polynomials of up to ``room`` steps; None, with 0 for the length, if they are not
+        needed. Raise IntegrationStopped if the motion cannot continue.
         """
-        # times, states, rows are addresses: of count sample times, of an array for their states, and of an array for
-        # the polynomials of up to room steps; None and 0 if not needed
         stepper, (function, p, most) = self.stepper, self.step_function(run)
         attempts = min(most, self.max_steps - stepper.tried(run))
         status: int = function(ctypes.addressof(run), ctypes.addressof(p), times, count, states, rows, room, attempts)

@@ -196,7 +196,7 @@ class _Stepper(Stepper):
     steps_per_call, rows_per_call = 50_000, 64
     reasons: ClassVar = {
         NOT_FINITE: "its derivatives are not finite there",
-        ROUNDED: "rounding errors in a formula of the time change its torque by more than the tolerance",
+        ROUNDED: "rounding errors in a formula that contains the time change the torque by more than the tolerance",
         UNDERFLOW: "the step shrank to nothing, as it does before a singularity",
         PAUSED: "{steps} steps were not enough",
     }

@@ -56,9 +56,9 @@ class Guards(RunState):
         return " and ".join(self._name(mode) for mode in sorted(self.held))
 
     def _regime(self, modes: Modes, held: frozenset[str] | None = None) -> Regime:
-        """Return the smooth motion for given values of the functions sign, abs, .., of which some are held.
+        """Return the smooth motion (regime) for given values of the functions sign, abs, ..
 
-        ``held`` names the functions whose arguments stay at zero, by default those that are held now.
+        ``held`` names the functions whose arguments stay at zero, by default the functions that are held now.
         """
         try:
             return self.system.regime(self.held if held is None else held, modes)
@@ -73,7 +73,8 @@ class Guards(RunState):
     def _guard_value(self, mode: str, place: tuple[float, Floats] | None = None) -> float:
         """Return the value of a switching function's argument, now or at ``place``, a pair (time, states).
 
-        For floor(x) it is x minus the present floor. ``mode`` names the number that replaces the function in formulas.
+        ``mode`` is the name that stands for the function's value in formulas. For floor(x) the result is x minus the
+        present floor.
         """
         # the floor is its value n in the present equations: it changes where x - n is 0 or 1
         regime = self._regime(self.modes)
@@ -106,9 +107,10 @@ class Guards(RunState):
         return np.broadcast_to(outside > ERRORS * self.motion.tolerance, times.shape)
 
     def _oriented(self, regime: Regime, guard: Guard, place: tuple[float, Floats]) -> float:
-        """Return the value of a guard's formula, which falls through zero where a function (sign, ..) switches; or NaN.
+        """Return the value of a guard's formula at ``place``, a pair (time, states); NaN if it has no value there.
 
-        It is NaN if the formula has no value at ``place``, a pair (time, states).
+        The formula decreases through zero where a function (sign, floor, ..) switches, which ends the motion
+        ``regime``.
         """
         try:
             return float_value(parse(guard.formula), self._values(regime, place))
@@ -131,9 +133,10 @@ class Guards(RunState):
     def _negative(
         self, regime: Regime, active: list[bool], values: list[float], piece: Piece
     ) -> tuple[list[Guard], list[Guard]]:
-        """Return the guards that are negative just after the start of ``piece``, and those negative at its end.
+        """Return two lists of guards: negative just after the start of ``piece``, and negative at its end.
 
-        A guard is a formula that turns negative where a function (sign, floor, ..) switches.
+        A guard is a formula that turns negative where a function (sign, floor, ..) switches; ``active`` says for each
+        guard of ``regime`` whether its zero ends the regime.
         """
         formulas = [guard.formula for guard in regime.guards]
         # such a function should have switched before the piece or within it; active: guards that can end the regime
@@ -144,7 +147,10 @@ class Guards(RunState):
         return first, last
 
     def _rises(self, regime: Regime, guard: Guard, piece: Piece, states: Callable[[Floats], Floats]) -> bool:
-        """Return whether the guard is at most zero at the start of ``piece`` and rises until it is positive."""
+        """Return whether the value of a guard is at most zero at the start of ``piece`` and rises until it is positive.
+
+        A guard is a formula that turns negative where a function (sign, floor, ..) switches.
+        """
         # The state was located where the guard is zero, to the rounding errors of a longer piece: it may be slightly
         # negative still. Values at doubled distances tell rising from falling, which is a switch back or sliding.
         start, end = float(piece.edges[0]), float(piece.edges[-1])
@@ -183,7 +189,10 @@ class Guards(RunState):
         return self._past(regime, guard, instant.after(correction))
 
     def _past(self, regime: Regime, guard: Guard, instant: Instant) -> Instant:
-        """Return ``instant``, moved on by some rounding errors if ``guard`` as computed there is still positive."""
+        """Return ``instant``, or a slightly later one if the computed ``guard`` is still positive at ``instant``.
+
+        A guard is a formula that turns negative where a function (sign, floor, ..) switches.
+        """
         # The function (sign, abs, ..) would switch back at once. Later times are tried, at growing distances of a few
         # units in the last place.
         formula, later = parse(guard.formula), instant

@@ -69,9 +69,11 @@ class ModeChanges(Guards):
         self.left, self.visited, self.released, self.rested = set(), {}, set(), set()
 
     def _coincident(self, regime: Regime, active: list[bool], values: list[float], most: int) -> Guard | None:
-        """Return the guard of a function (sign, floor, ..) that has not yet switched now but has to, or None.
+        """Return the guard of a function (sign, floor, ..) that switches at the present time but has not switched yet.
 
-        The guard is negative just after the present time or, if ``most`` is 0, at most zero.
+        The formula of the guard is then negative just after the present time or, if ``most`` is 0, not positive. Return
+        None if there is no such function. ``active`` says for each guard of ``regime`` whether its zero ends the
+        regime; ``values`` are the parameters of the guards.
         """
         # Functions that switch at one time do so one after the other; the rates may have no value until the last one
         # has, such as a root of a negative argument.
@@ -106,9 +108,9 @@ class ModeChanges(Guards):
         )
 
     def _no_longer_held(self) -> None:
-        """Release an x in sign(x) that does not stay at zero any more, because another function has switched.
+        """Release a held function sign(x) if x does not stay at zero any more, because another function has switched.
 
-        Raise IntegrationStopped if there is no such x: the continuation of the motion is then not unique.
+        Raise IntegrationStopped if no function is released: the continuation of the motion is then not unique.
         """
         released = self._released_by_another(solvable=False)
         if released is None:
@@ -116,9 +118,12 @@ class ModeChanges(Guards):
         self._change(*released)
 
     def _change(self, mode: str, change: int) -> None:
-        """Change the value of the function (sign, ..) with the mode ``mode``, or hold its argument at zero.
+        """Change the value of the function (sign, floor, ..) with the mode ``mode`` at the present time.
 
-        ``change`` is as in :class:`Guard`: the new sign, 0 for the opposite sign, or 1 or -1 to add to a floor.
+        A held sign is released and gets the value ``change``, 1 or -1. Another sign changes to its opposite, or its
+        argument is held at zero if the rates on both sides drive it back there. A floor changes by ``change``, or to
+        its new value if its argument has jumped. Raise IntegrationStopped if the switches contradict each other, or if
+        the motion would slide along a floor or backward in time.
         """
         kind = self.by_name[mode].kind
         self.left.add((mode, self.modes[mode]))
@@ -176,10 +181,10 @@ class ModeChanges(Guards):
         return all(sign > 0 for sign, guard in zip(signs, regime.guards, strict=True) if guard.mode == mode)
 
     def _released_by_another(self, solvable: bool = True) -> tuple[str, int] | None:
-        """Return the name of a sign(x) held at x = 0 that another function's switch now releases, with its new value.
+        """Return the pair (mode, new value) of a held sign(x) that the switch of another function now releases.
 
-        Return None if there is none. ``solvable``: whether the held signs have values for which all their arguments
-        stay at zero.
+        The argument x was held at zero; the new value is 1 or -1. Return None if no function is released. ``solvable``
+        says whether the held functions have values for which all their arguments stay at zero.
         """
         # without the other switch, the value of the mode that keeps the guard at zero says when the sliding ends
         for mode in sorted(self.held):
@@ -218,10 +223,10 @@ class ModeChanges(Guards):
         return frozenset((mode, value) for mode, value in modes.items() if mode not in held), held
 
     def _jumped(self, mode: str) -> bool:
-        """Return whether a function inside another one, which has the mode ``mode``, has switched later than that one.
+        """Return whether a function inside the argument of the function with the mode ``mode`` has switched after it.
 
-        In abs(x + sign(y)): whether sign(y) has switched after abs, at the same present time. The argument of abs has
-        then jumped, and abs may switch again.
+        For the mode of abs in abs(x + sign(y)): whether sign(y) has switched after abs, both at the present time. The
+        argument of abs has then jumped, and abs may switch again.
         """
         last = len(self.order) - self.order[::-1].index(mode)
         return bool(self._names_inside(mode) & set(self.order[last:]))
@@ -229,7 +234,11 @@ class ModeChanges(Guards):
     def _is_rounding(
         self, regime: Regime, guard: Guard, piece: Piece, states: Callable[[Floats], Floats]
     ) -> bool:  # fmt: skip
-        """Return whether a guard (argument of sign, ..) is negative at the start of ``piece`` only by rounding."""
+        """Return whether a guard is negative at the start of ``piece``, a part of the motion, only by rounding.
+
+        A guard is a formula that turns negative where a function (sign, floor, ..) switches; its function has just
+        switched.
+        """
         # the guard is zero there, because its function has just switched
         if guard.mode in self.held or not self.flipped.get(guard.mode):
             return False
@@ -242,12 +251,12 @@ class ModeChanges(Guards):
         return not self._jumped(guard.mode) and self._rises(regime, guard, piece, states)
 
     def _asleep(self) -> set[str]:
-        """Return the names of the switching functions without effect now: those in unused branches of ``where``."""
+        """Return the names of the switching functions in branches of ``where`` that have no effect now."""
         # such as the sign in where(omega_1 > 0, sign(omega_2), 0) while omega_1 < 0
         return {s.mode for s in self.system.switches if s.where and not hold(s.where, self.modes, self.held)}
 
     def _wake(self, mode: str) -> None:
-        """Set the ``mode`` of a function such as sign(x) to the present value of the function."""
+        """Set the value of the function with the mode ``mode``, such as sign(x), to its present value."""
         # the motion begins to use the branch of where(..) with this function, whose changes were not followed before
         try:
             guard = self._guard_value(mode)
@@ -276,7 +285,10 @@ class ModeChanges(Guards):
         self._regime(self.modes)
 
     def _comes_to_rest(self, regime: Regime) -> bool:
-        """Set sign(x) to sign(0) where x was held at zero but stays zero by itself; return whether any was set."""
+        """Give each held sign(x) the value sign(0) if x stays zero even if it is not held.
+
+        Return whether there was such a function.
+        """
         # Held: the equations contain the value of sign(x) between -1 and 1 for which x remains zero. If x remains zero
         # with sign(0) too, as for a body at rest that no torque drives, sign(0) replaces it.
         resting = [mode for mode in sorted(self.held - self.rested) if self.system.matters_at_zero(mode)]
@@ -297,7 +309,11 @@ class ModeChanges(Guards):
         return all(value > least * first for value, first in zip(now, self.attraction[1], strict=True))
 
     def _leaves_zero(self, regime: Regime, active: list[bool], piece: Piece) -> bool:
-        """Set each sign(x) that is 0 to the sign of x at the end of ``piece``; return whether one was changed."""
+        """Give each sign(x) with the value 0 the sign of x at the end of ``piece``; return whether a value changed.
+
+        ``piece`` is a part of the motion. ``active`` says for each guard of ``regime`` whether its zero ends the
+        regime; only those functions are examined.
+        """
         # only functions whose guard can end the regime (active)
         numbers = [
             n
@@ -354,8 +370,8 @@ class ModeChanges(Guards):
     def _check_held_alone(self) -> None:
         """Raise IntegrationStopped if the motion slides along the jumps of two functions at once.
 
-        While x in sign(x) is held at zero, the argument of another function is then zero too, whose value at its jump
-        the equations do not determine.
+        This is so if the argument of another function with a jump is zero wherever the argument of a held sign(x) is:
+        the equations determine the value of the held sign, not the value of the other function at its jump.
         """
         # The equations determine one value between -1 and 1 for a held sign, not the two values in sign(omega_1) +
         # sign(omega_1 + omega_1^3), whose arguments are zero together.
@@ -400,5 +416,8 @@ class ModeChanges(Guards):
 
 
 def _signed(twins: Sequence[tuple[str, int]], sign: int) -> Modes:
-    """Return the values of functions (sign, abs, ..) that switch together, if the first has the value ``sign``."""
+    """Return the values, by name, of functions (sign, abs, ..) whose arguments are zero together.
+
+    ``twins`` has a pair (name, 1 or -1) for each function; its value is ``sign`` times this number.
+    """
     return {twin: sign * relative for twin, relative in twins}

@@ -1,8 +1,8 @@
 """Motions under torques that jump or bend, followed from one switch to the next.
 
-A switching function (sign, abs, ..) has a *guard*, its argument, and a *mode*, the number that replaces it in
-formulas. Between switches the motion is smooth: a *regime*. Driven back to a switch from both sides, it *slides*: the
-guard is *held* at zero.
+A switching function (sign, abs, ..) has a *guard*, its argument, and a *mode*, the number that replaces it in formulas.
+Between switches the motion is smooth: a *regime*. If the rates on both sides drive the guard back to zero, the motion
+*slides*: the guard is *held* at zero.
 """
 
 from time import perf_counter

@@ -172,7 +172,10 @@ class Regime:
         return self._bound[place]
 
     def zeros(self, modes: Modes, zero: Instant, y: Floats) -> set[str]:
-        """Return which of the states ``y`` and of the output quantities' parameters are zero, as a set of names."""
+        """Return the names of the states and parameters in the formulas of the output quantities whose values are zero.
+
+        ``y`` are the states.
+        """
         # with these names one decides whether x in sign(x) stays zero by itself, as in a body at rest
         return {name for name, value in self._inputs(modes, zero, y).items() if value == 0.0}
 
@@ -185,15 +188,15 @@ class Regime:
         return [float(quantities[name]) for name in names]
 
     def _inputs(self, modes: Modes, zero: Instant, y: Floats) -> dict[str, float]:
-        """Return the inputs of the output quantities, by name: the states ``y`` and the parameters of the formulas."""
+        """Return a map from the names of all inputs of the output quantities to values: states ``y`` and parameters."""
         numbers = self._parameters_under(modes).quantities.parameters(zero.exact)
         values = zip((name for name, _ in self.quantity_parameters), numbers, strict=True)
         return dict((*values, *zip(self.plan.states, y.tolist(), strict=True)))
 
     def rates_since(self, modes: Modes, zero: Instant) -> Callable[[float], list[float]] | None:
-        """Return a function that takes a later instant, s after ``zero``, and returns the parameters of the rates.
+        """Return a function that takes an epoch, s after ``zero``, and returns the parameters of the rates.
 
-        With these parameters the rates take the time since that instant. Return None if they do not depend on time.
+        With these parameters the rates count time from the epoch. Return None if the rates do not depend on time.
         """
         rates = self._parameters_under(modes).rates
         return None if rates.fixed else lambda since: rates.parameters(zero.exact + Fraction(since))

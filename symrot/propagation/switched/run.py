@@ -228,7 +228,10 @@ class SwitchedRun(ModeChanges):
         return guard
 
     def _arrive(self, instant: Instant) -> None:
-        """Set the clock to 0 at the instant of a switch, unless the motion ends there, and forget earlier switches."""
+        """Set the clock to 0 at the instant of a switch of sign, abs, .., unless the motion ends there.
+
+        The lists of functions that switched at the instant before are cleared.
+        """
         if self.t != self.end:
             self._move_clock(instant)
         self._forget_changes()

@@ -70,10 +70,10 @@ class RunState:
             self.rounded_beyond.append(zero.after(self.rounding.beyond).high)
 
     def clock(self, regime: Regime, stepped: Any) -> Callable[[float], tuple[Any, list[float]]] | None:
-        """Return a function that takes an epoch, s after :attr:`zero`, and returns rates and their parameters.
+        """Return a function that takes an epoch, s after :attr:`zero`, and returns the pair (``stepped``, parameters).
 
-        The rates are ``stepped``, a library or a Python function; with these parameters they take the time since the
-        epoch. Return None if the rates do not depend on time.
+        ``stepped`` computes the rates: a library or a Python function. With these parameters the rates count time from
+        the epoch. Return None if the rates do not depend on time.
         """
         # the epoch is the time at which the stepper sets its clock to 0
         parameters = regime.rates_since(self.modes, self.zero)

@@ -1,7 +1,7 @@
-"""The smooth motion up to the next switch in pieces, groups of consecutive steps, as a stepper computes them.
+"""The smooth motion up to the next switch of sign, abs, .., in pieces: groups of consecutive steps of a stepper.
 
 Each piece has two forms: polynomials in time, and a function from times to states. A *window* is the interval of time
-that SciPy follows before the search for a switch.
+that SciPy integrates at once; only then the caller searches it for a switch.
 """
 
 from collections.abc import Callable, Iterator
@@ -123,7 +123,10 @@ class SciPyPieces:
             y, t, length = recording(stop), stop, min(2.0 * length, run.span / FEWEST)
 
     def _first_length(self) -> float:
-        """Return the length, s, of the first window: the interval that SciPy follows before the search for a switch."""
+        """Return the length, s, of the first window: the interval that SciPy integrates at once, before it is searched.
+
+        The search is for a switch of sign, abs, ..; the motion beyond a switch is computed in vain.
+        """
         run = self.run
         (_, rates, *_), _ = error_blocks(self.motion.plan)
         turning = float(np.linalg.norm(run.y[:rates]))  # rad/s, or 1 if omega is not a state

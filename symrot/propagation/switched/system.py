@@ -29,7 +29,7 @@ CONTINUOUS = ("abs(", "max(", "min(", "clip(", "sqrt(")  # first characters of l
 
 
 class SwitchedSystem:
-    """All switching functions (sign, abs, ..) in the torques of a plan, and the smooth motions between switches."""
+    """All switching functions (sign, abs, ..) in the torques of a scene, and the smooth motions between switches."""
 
     def __init__(self, plan: Plan, choice: Choice, tolerance: float) -> None:
         # Numbers replace the functions between switches. While the motion slides, the arguments of some functions stay
@@ -39,7 +39,7 @@ class SwitchedSystem:
 
     @cached_property
     def switches(self) -> list[Switch]:
-        """The switching functions (sign, abs, ..) of all torques, each with its argument and its mode."""
+        """The switching functions (sign, abs, ..) of all torques, each with its argument and the name of its value."""
         # the mode, a constant of the plan, is the number that replaces the function in the formulas
         return [switch for switches in self._switches_by_torque for switch in switches]
 
@@ -49,11 +49,11 @@ class SwitchedSystem:
 
     @cached_property
     def twins(self) -> dict[str, list[tuple[str, int]]]:
-        """The functions that switch together with each sign or abs in one torque, as sign(omega_3) and abs(2*omega_3).
+        """For each sign, abs, ..: the functions of the same torque whose arguments are zero together.
 
-        A function is named by its mode, the number that replaces it in formulas. A map from each mode to a list of
-        pairs (mode, 1 or -1), which includes this mode; -1 means that the argument has the opposite sign of the first
-        argument in the list.
+        Examples are sign(omega_3) and abs(2*omega_3). The property is a map from the name of a function's mode, the
+        number that replaces the function in formulas, to a list of pairs (mode, 1 or -1), with one pair for the
+        function itself. -1 means that the argument has the opposite sign of the first argument in the list.
         """
         numbers: dict[str, Node] = {name: ("number", value) for name, value in self.constants.items()}
         for mode in self.switches:
@@ -71,10 +71,11 @@ class SwitchedSystem:
         return twins
 
     def tied(self, held: frozenset[str]) -> dict[str, tuple[str, int]]:
-        """Return the functions that switch together with the functions ``held``, whose arguments stay at zero.
+        """Return the functions that switch together with a held function, as abs(2*omega_3) with sign(omega_3).
 
-        A map from the name of a function to (name of a held function, 1 or -1); -1 means that the arguments of these
-        two functions have opposite signs.
+        The arguments of the functions ``held`` stay at zero. The result is a map from the name of a function to the
+        pair (name of the held function, 1 or -1); -1 means that the arguments of these two functions have opposite
+        signs.
         """
         # held: the argument of the function stays at zero; a function that switches at the same time follows
         return {twin: (mode, sign) for mode in held for twin, sign in self.twins[mode] if twin != mode}
@@ -122,7 +123,10 @@ class SwitchedSystem:
         return self._modes_at_start({})
 
     def beside_start(self, mode: str, sign: int) -> Modes:
-        """Return the values of all functions (sign, abs, ..) just after the start, if that of ``mode`` is ``sign``."""
+        """Return the values of all functions (sign, abs, ..) just after the start, if ``mode`` is ``sign``.
+
+        A mode is the number that replaces a function in formulas.
+        """
         # functions that contain this one, such as floor(sign(x) + y), differ for 1 and -1
         return self._modes_at_start({mode: sign})[0]
 
@@ -170,7 +174,7 @@ class SwitchedSystem:
                     if names(switch.guard) & (held | tied.keys()):
                         raise InputError(
                             f"torque: the motion slides along the jump of a function inside {switch.label}, which has "
-                            "no value there; write the torque without functions with a jump inside other ones"
+                            "no value there; write the torque without a function with a jump inside another function"
                         )
                 own = on_own_clock(plan, self.choice, self.tolerance)
                 self._regime_of[content] = Regime(self.constants, self.switches, own, held, switches)
@@ -192,7 +196,7 @@ class SwitchedSystem:
 
 
 def _switches(torque: FormulaTorque) -> list[Switch]:
-    """Return the switching functions (sign, abs, ..) of a torque, each with the name of its mode in the plan.
+    """Return the switching functions (sign, abs, ..) of a torque, each with the name of its mode in the equations.
 
     The mode is the number that replaces the function in formulas; its name begins with the prefix of the torque, such
     as ``torque2_``.
@@ -233,7 +237,12 @@ def _bends(switch: Switch | TorqueSwitch) -> bool:
 def _chosen(
     torque: TorqueStructure, modes: Modes, held: frozenset[str], tied: Mapping[str, tuple[str, int]]
 ) -> TorqueStructure:
-    """Return a torque reduced to the branches of ``where(condition, u, v)`` that apply for given values of sign, .."""
+    """Return a torque in which the branch that applies replaces each ``where(condition, u, v)``.
+
+    ``modes`` has the values of the switching functions (sign, abs, ..). The functions ``held`` become unknowns of the
+    equations; functions with jumps in ``tied`` become the same unknowns or their negatives
+    (:meth:`SwitchedSystem.tied`). A torque without formulas is returned unchanged.
+    """
     if not isinstance(torque, FormulaTorque):
         # no formulas
         return torque

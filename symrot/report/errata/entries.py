@@ -170,8 +170,8 @@ def _example(item: Finding, letters: Mapping[str, str]) -> str:
 # -- conditions --------------------------------------------------------------------------------------------------------
 
 WORDS = {
-    ("sin", "!="): "{} is no multiple of 180 degrees",
-    ("cos", "!="): "{} is no odd multiple of 90 degrees",
+    ("sin", "!="): "{} is not a multiple of 180 degrees",
+    ("cos", "!="): "{} is not an odd multiple of 90 degrees",
     ("sin", ">="): "{} lies between 0 and 180 degrees",
     ("cos", ">="): "{} lies between -90 and 90 degrees",
 }
@@ -186,7 +186,7 @@ def condition_words(condition: str) -> str:
     Examples
     --------
     >>> condition_words("sin(theta) != 0")
-    '$\\\\sin \\\\theta \\\\neq 0$: $\\\\theta$ is no multiple of 180 degrees'
+    '$\\\\sin \\\\theta \\\\neq 0$: $\\\\theta$ is not a multiple of 180 degrees'
     """
     sign, left, right = _without_negative_terms(read_relation(condition))
     signs = {"!=": "\\neq", ">=": "\\ge", "<=": "\\le", "==": "="}

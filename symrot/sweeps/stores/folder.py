@@ -35,9 +35,10 @@ def create(path: Path, fill: Callable[[Path], None]) -> bool:
 
 
 def require_own(header: Header, path: Path, description: Callable[[], Mapping[str, Any]]) -> None:
-    """Raise InputError if the folder ``path`` no longer holds the sweep that ``header`` describes.
+    """Raise InputError if the folder ``path`` no longer holds the sweep that ``header`` describes, in the same chunks.
 
-    ``description`` reads what identifies the sweep in the folder, as for :func:`symrot.sweeps.layout.continued`.
+    ``description`` reads from the folder the identity of the sweep and the number of trajectories in a chunk, as for
+    :func:`symrot.sweeps.layout.continued`.
     """
     # somebody may have removed the folder and begun another sweep there while this one runs
     if continued(header, path, description).rows != header.rows:

@@ -72,9 +72,9 @@ class ParquetStore:
         return [each for each in self.header.ranges() if not self._file(each[0]).exists()]
 
     def write(self, chunk: Chunk) -> None:
-        """Store a chunk; a chunk that is stored already is replaced by the same values.
+        """Store a chunk; if it is stored already, it is overwritten, which changes no values.
 
-        Raise InputError if the folder holds another sweep by now.
+        Raise InputError if the folder no longer holds this sweep, because somebody has begun another one in it.
         """
         require_own(self.header, self.path, self._description)
         n, times = chunk.stop - chunk.start, self.header.times
@@ -135,7 +135,7 @@ class ParquetStore:
         """Store the statistics ``tables`` at the end of a sweep.
 
         Raise InputError if ``only_statistics`` is not empty, since values cannot be removed from these files, or if
-        the folder holds another sweep by now.
+        the folder no longer holds this sweep.
         """
         require_own(self.header, self.path, self._description)
         if tables:
@@ -147,7 +147,10 @@ class ParquetStore:
             )
 
     def dataset(self) -> Any:
-        """Return the results as a pandas DataFrame, with the index (trajectory, t), or trajectory."""
+        """Return the results as a pandas DataFrame, one row for each trajectory, or for each of its sample times.
+
+        The index is ``(trajectory, t)`` if an output has values at all sample times, otherwise ``trajectory``.
+        """
         pandas = optional("pandas", "to_dataframe")
         return pandas.read_parquet(os.fspath(self.path)).set_index([TRAJECTORY, "t"] if self._long else [TRAJECTORY])
 

@@ -1,8 +1,8 @@
-"""Writing of chunks by workers on the machine of the client, which then need not send them.
+"""Writing of chunks by workers on the machine of the client, so that they need not send the chunks to the client.
 
-The client is the process that runs a sweep and submits its chunks to workers. It makes an offer: while it runs, it
-holds a file in memory with a mark, a text of its own. A worker writes only if it finds the mark in this file. Otherwise
-the client is on another machine or has ended, and the worker returns its chunk.
+The client is the process that runs a sweep and submits its chunks to workers. It offers them to write into its store:
+while it runs, it holds a file in memory with a mark, a text of its own. A worker writes only if it finds the mark in
+this file. Otherwise the client is on another machine or has ended, and the worker returns its chunk.
 """
 
 import os

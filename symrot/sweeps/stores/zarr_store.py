@@ -67,9 +67,9 @@ class ZarrStore:
         return [each for each in self.header.ranges() if status[each[0]] == NOT_COMPUTED]
 
     def write(self, chunk: Chunk) -> None:
-        """Store a chunk; a chunk that is stored already is replaced by the same values.
+        """Store a chunk; if it is stored already, it is overwritten, which changes no values.
 
-        Raise InputError if the folder holds another sweep by now.
+        Raise InputError if the folder no longer holds this sweep, because somebody has begun another one in it.
         """
         self._require_own()
         rows = slice(chunk.start, chunk.stop)

@@ -253,6 +253,9 @@ def _bounds(path: Path, data: Data, method: Method, source: str, rerun: bool) ->
             f"in it ({reason}); print the certificate again"
         ) from None
     if json.dumps(own, sort_keys=True) != json.dumps(data["bounds"], sort_keys=True):
-        raise CertificateError(f"{path}: expected the bounds that symrot computes on the box, got others")
+        raise CertificateError(
+            f"{path}: expected the bounds that symrot computes for the ranges in the certificate, got other bounds; "
+            "print the certificate again"
+        )
     agreement = "were computed again and agree" if rerun else "are those that symrot computes"
     return f"bounds of rounding and truncation {agreement}"

@@ -105,7 +105,7 @@ def lines(data: Data) -> list[str]:
         rows.append(
             (
                 "C text",
-                f"{name} and its batch function compute the method in {count} operations (equal at "
+                f"{name} and its batch function compute the formula of the method in {count} operations (equal at "
                 f"{function['points']} random points; wrong with a probability below "
                 f"{function['wrong_with_probability_below']})",
             )
@@ -138,7 +138,7 @@ def _law_rows(data: Data) -> list[tuple[str, str]]:
     if "bounds" not in data:
         return [
             *rows,
-            ("errors", "not bounded; --box bounds those of a free body away from its middle axis"),
+            ("errors", "not bounded; --box bounds them for a free body that does not rotate near its middle axis"),
         ]
     bounds = {kind: data["bounds"][kind] for kind in ("rounding", "truncation")}
     return rows + [
@@ -167,5 +167,6 @@ def _error_row(kind: str, errors: Mapping[str, float]) -> tuple[str, str]:
         return kind, "none"
     return (
         kind,
-        f"at most {rounded_up(Fraction(errors[worst]), 2)} in one step on the box, in double precision ({worst})",
+        f"at most {rounded_up(Fraction(errors[worst]), 2)} in one step for inputs in the ranges of --box, in double "
+        f"precision ({worst})",
     )

@@ -68,7 +68,8 @@ def audit_elliptic(path: Path, data: Data, scene: SceneSource | None = None) -> 
         raise CertificateError(f"{path}: expected the layout of a certificate as symrot prints it, got another")
     return [
         f"{step.name}: {len(texts)} files are those that symrot prints for the scene in the certificate",
-        f"the C text solves the equations of motion at {STATES} states to {DIGITS} digits; nothing is proven elsewhere",
+        f"the C text solves the equations of motion at {STATES} states to {DIGITS} digits; nothing is proven for other "
+        "states",
         _of_scene(path, step.scene.name, data, scene),
         "bounds of rounding and truncation are those that symrot computes"
         if "bounds" in data
@@ -96,8 +97,8 @@ def _box(path: Path, data: Data) -> dict[str, tuple[Fraction, Fraction]]:
 def _bounds(path: Path, step: ExactStepText, data: Data) -> Data:
     """Return the section ``bounds`` as symrot prints it, with the numbers that the certificate states.
 
-    CertificateError is raised unless these numbers agree, but for the factor ``NEAR``, with the bounds that symrot
-    computes on the same box.
+    CertificateError is raised if one of these numbers differs by more than the factor ``NEAR`` from the bound that
+    symrot computes on the same box.
     """
     box = _box(path, data)
     stated = {kind: _numbers(path, data["bounds"], kind) for kind in ("rounding", "truncation")}
@@ -109,7 +110,10 @@ def _bounds(path: Path, step: ExactStepText, data: Data) -> Data:
         for name, value in own[kind].items():
             # the last digits depend on the functions of the machine
             if not float.fromhex(value) / NEAR <= numbers[name] <= float.fromhex(value) * NEAR:
-                raise CertificateError(f"{path}: expected the bounds that symrot computes on the box, got others")
+                raise CertificateError(
+                    f"{path}: expected the bounds that symrot computes for the ranges in the certificate, got another "
+                    f"{kind} bound of {name}; print the certificate again"
+                )
     return own | {kind: {name: x.hex() for name, x in numbers.items()} for kind, numbers in stated.items()}
 
 

@@ -47,7 +47,7 @@ Motions = Callable[[Sequence[Fraction], Sequence[Fraction]], Any]
 # The parameters p are those of the closed form: moments of inertia, and pull (weight times the distance of the centre
 # of mass, in N m).
 class _Form(NamedTuple):
-    """The parts of a step's C text that differ between closed forms, such as the free body and the heavy top."""
+    """What the C text of a time step contains for one kind of closed form: the free body or the heavy top."""
 
     library: str
     title: str
@@ -197,7 +197,7 @@ class ExactStepText(StepFiles):
         if self.form.library != "free_body":
             raise InputError(
                 f"--box: expected no ranges for the step exact of {self.scene.name}, because symrot bounds no errors "
-                "of the exact step of a heavy top; the step taylor of order 16 is close to it"
+                "of the exact step of a heavy top; take --step taylor --order 16, whose result is close"
             )
         if set(box) != set(BOXED):
             ranges = " ".join(f"--box {name}=LOW:HIGH" for name in BOXED)

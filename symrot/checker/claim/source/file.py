@@ -30,7 +30,7 @@ OTHER_KEYS = ("where", "define", "units")
 OTHER_KEYS a value of another shape, which ``_check_key`` describes."""
 
 FILE_KEYS = ("schema", "claim", "document", "title", "kind", "lost", "note")
-"""The keys of a file; the last five describe the document from which its claims come."""
+"""The keys at the top of a file of claims; the last five describe the document from which its claims come."""
 
 MOST_CLAIMS = 2000
 MOST_NAMES = 500

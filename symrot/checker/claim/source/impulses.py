@@ -76,9 +76,10 @@ def _integrand(term: Node) -> Node | None:
 
 
 def _rate_of_change(terms: Sequence[Node], vectors: Mapping[str, bool]) -> tuple[Node, str] | None:
-    """Return the rate of a sum of terms that is the change of a quantity, and the name of what changes.
+    """Return the rate of change of a quantity from its change during a time, and the name of what changes.
 
-    ``I*omega_2 - I*omega_1`` gives ``I*diff(omega, t)`` and omega. None if the sum is no such change.
+    ``terms`` are the change as a sum, ``I*omega_2 - I*omega_1``, or as a product, ``I*Delta_omega``; both give
+    ``I*diff(omega, t)`` and omega. None if the terms are no change of a quantity.
     """
     if len(terms) == 1:
         (term,) = terms

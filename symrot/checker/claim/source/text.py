@@ -262,10 +262,10 @@ def _shapes(vectors: Sequence[Vector], define: Sequence[tuple[str, Node]]) -> di
 
 
 def _with_arrays(relation: Relation, vectors: Sequence[Vector], define: Sequence[tuple[str, Node]]) -> Quaternions:
-    """Return the Quaternions of a relation, with the relation's matrices and columns added.
+    """Return the quaternions, matrices and columns of an equation as a :class:`Quaternions`.
 
-    ``definitions`` then has the matrices too, ``vectors`` has the names of the columns too, and ``relation`` has
-    ``dot(a, b)`` for ``a^T b``.
+    In the result, ``definitions`` holds the quaternions and matrices, ``vectors`` the names of the columns too, and
+    ``relation`` is the equation with ``dot(a, b)`` for ``a^T b``.
     """
     known = {name for name, _ in define}
     names = {vector.name for vector in vectors}

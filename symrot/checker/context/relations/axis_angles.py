@@ -35,7 +35,13 @@ def is_stated(context: Context) -> bool:
 
 
 def substitutions_of_axis_angles(context: Context, sides: Sequence[Expr]) -> Iterator[Substitution]:
-    """Yield the Substitution for a claim that means ``tan(theta) = A/C tan(gamma)`` for a free symmetric top."""
+    """Yield interpretations of the letters of a claim that means ``tan(theta) = A/C tan(gamma)`` for a free
+    symmetric top.
+
+    Angle theta is from the axis to the angular momentum, gamma to the angular velocity. Each Substitution replaces
+    gamma by ``atan(C/A tan(theta))``. The claim, given by its ``sides``, must have two angles, two moments and a
+    tangent as one side; the ``context`` may say which angle is which.
+    """
     if context.body is not None and "free symmetric" not in context.body.kind.title:
         return
     names = {atom: plain(as_text(atom)) for atom in sorted(atoms_of(sides), key=str)}

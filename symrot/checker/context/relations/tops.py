@@ -33,7 +33,8 @@ COORDINATES: tuple[tuple[str, Expr], ...] = (
     (r"A|I|[IJ]_?([012tx]|xx|yy|perp)|I_prime", A), (r"C|[JI]|[IJ]_?([3sz]|zz)", C),
     ("m|M", MASS), ("g", GRAVITY), (r"l|ell|h|a|R|d|r|[lrh]_?(G|cm|C)|z_?(G|C|cm)", ARM), ("W|mg", WEIGHT),
 )  # fmt: skip
-"""Pairs of a pattern of letters and the independent quantity that such a letter can be."""
+"""Pairs (pattern of letters, symbol) for what a letter of a claim about a top can mean: an angle, the rate of one, a
+moment of inertia, or a mass, g, a length or a weight. Other quantities of a top are formulas in these symbols."""
 MOMENT_LETTERS = {symbol: letters for letters, symbol in COORDINATES if symbol in (A, C)}
 
 QUANTITIES: tuple[tuple[str, tuple[str, ...]], ...] = (
@@ -45,7 +46,7 @@ QUANTITIES: tuple[tuple[str, tuple[str, ...]], ...] = (
     ("dE|E_prime|E_?1", ("energy without the energy of the spin",)), ("L", ("Lagrangian",)),
     ("[VU]_?eff", ("effective potential", "effective potential without the energy of the spin")),
 )  # fmt: skip
-"""Pairs of a pattern of letters and the quantities of a top that such a letter can be."""
+"""Pairs (pattern of letters, titles) for the quantities of a top, such as "kinetic energy", that a letter can mean."""
 
 EVIDENT = ("momentum of precession", "momentum of spin", "effective potential", "spin along the axis")
 """Titles of quantities of a top: a claim with such a quantity and with the angle theta is about a top."""
@@ -53,8 +54,9 @@ CONJUGATE = re.compile("p_?(phi|varphi|theta|vartheta|psi)")
 
 
 def substitutions_of_tops(context: Context, sides: Sequence[Expr]) -> Iterator[Substitution]:
-    """Yield each Substitution for a claim about a symmetric top: spin and momenta become formulas in angles and
-    rates.
+    """Yield the possible meanings of the letters of a claim about a symmetric top, as Substitutions.
+
+    Each Substitution replaces spin and momenta by formulas in the angles of the top and their rates.
     """
     if context.body is not None and context.body.kind.formulas != TOPS:
         return
@@ -154,9 +156,10 @@ def _formulas(load: Expr) -> dict[str, Expr]:
 def _of_steady_precession(
     names: Mapping[Expr, str], values: Mapping[Expr, Expr], sides: Sequence[Expr], load: Expr
 ) -> Iterator[Substitution]:
-    """Yield the Substitution for a claim ``phi' = f`` about steady precession, with an equation in place of the claim.
+    """Yield, for a claim ``phi' = f`` about steady precession, a Substitution with another equation to decide.
 
-    This equation is Lagrange's equation for constant theta, with f in place of phi'.
+    That equation is Lagrange's equation for constant theta, with f in place of phi'. ``values`` maps the claim's
+    letters to quantities of a top, and ``load`` is its weight, m*g or W.
     """
     for side, formula in (sides, sides[::-1]):
         if values.get(side) != DPHI or side in atoms_of([formula]):

@@ -166,10 +166,10 @@ class Conditions:
     def _simpler(self, entry: tuple[Mapping[Expr, int], int, str]) -> tuple[Mapping[Expr, int], int, str] | None:
         """Return a condition on a product without factors of known sign; None if the condition is no longer needed.
 
-        A condition is not needed if it always holds, or after it was added to ``ranges``: ``2*x - pi >= 0`` as x >=
-        pi/2.
+        The condition ``entry`` is a triple (powers of the factors, direction, sign): ({x: 1, y: 1}, -1, ">= 0") means
+        -x*y >= 0. Return None for a condition that always holds. A condition on one quantity, such as
+        ``2*x - pi >= 0``, is stored in ``self.ranges`` as x >= pi/2; return None then too.
         """
-        # ({x: 1, y: 1}, -1, ">= 0") is -x*y >= 0
         factors, direction, sign = entry
         bounds = {factor: bound_of(factor) for factor in factors}
         if sign == ">= 0" and all(bound.formula in self.nonzero for bound in bounds.values()):
@@ -220,9 +220,9 @@ class Conditions:
         return True
 
     def _excludes(self, formula: Expr) -> bool:
-        """Return whether ranges and products say that ``formula``, which must not be zero, is nonzero.
+        """Return whether the condition ``formula != 0`` follows from ``self.ranges`` and ``self.products``.
 
-        If the zero of the formula is an end of a range, this end is first excluded: for the formula x, ``x >= 0``
+        If the formula is zero at an end of a range, remove this end from the range first: for the formula x, ``x >= 0``
         becomes ``x > 0``.
         """
         bound = bound_of(formula)

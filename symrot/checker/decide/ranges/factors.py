@@ -54,8 +54,9 @@ def _leaves(formula: Expr) -> list[Expr]:
 
 
 def sign_and_factors(formula: Expr) -> tuple[int, dict[Expr, int]] | None:
-    """Return the sign and the factors of a formula, (-1, {x: 2, y: -1}) for ``-4*x**2/y``; None if these are
-    unknown.
+    """Return (sign, powers) for a formula: (-1, {x: 2, y: -1}) for ``-4*x**2/y``. Return None if they are unknown.
+
+    The powers map each factor with symbols to its exponent; of the constant factors, only the sign is returned.
     """
     above, below = sympy.fraction(sympy.together(formula))
     sign, powers = 1, dict[Expr, int]()

@@ -42,7 +42,10 @@ def follow(signs: Sequence[Sign], known: Sequence[Sign]) -> bool:
 
 
 def condition_texts(conditions: Iterable[Any]) -> tuple[str, ...]:
-    """Return the conditions of a decision as texts, such as ``"x >= 0"``: first those that make the claim true."""
+    """Return the conditions of a decision as texts, such as ``"x >= 0"``.
+
+    First come those that make the sides of the claim equal, then those under which sides and proof have real values.
+    """
     conditions = list(conditions)
     required = [each for each in conditions if isinstance(each, Requirement)]
     # conditions that follow from the only requirement are left out

@@ -13,7 +13,8 @@ from symrot.kinematics.rotations import elementary_rotation, skew
 __all__ = ["CROSS_PRODUCT", "axes", "charts", "quaternions", "sequences"]
 
 CROSS_PRODUCT = "cross product v x n"
-"""The end of the names of the known cross product and of its components."""
+"""Name of the formula that symrot knows for a cross product; names of its components, such as "first component of the
+cross product v x n", end with it."""
 
 FRAMES = ("body", "space")
 

@@ -14,7 +14,7 @@ from symrot.inertia import tensor
 __all__ = ["SYMMETRIC_EULER", "rigid_bodies", "torques"]
 
 SYMMETRIC_EULER = "by Euler's equations of a symmetric body"
-"""Part of the names of formulas in which the two transverse moments have one letter."""
+"""Words in the names of formulas for a body whose moments about axes 1 and 2 are equal: both are the letter A."""
 
 
 def rigid_bodies() -> Iterator[Named]:
@@ -61,7 +61,8 @@ ACTING: tuple[tuple[str, str, dict[str, FieldPattern]], ...] = (
     ("damping", "linear damping", {"linear": VECTOR, "quadratic": ZERO}),
     ("spring", "torsional spring", {"stiffness": FREE, "attitude": (FREE,) * 4}),
 )  # fmt: skip
-"""Kind of a torque, its name, and the pattern of each of its values: FREE stands for a symbol."""
+"""Torques with a known formula: triples (kind in symrot's table of torques, words for the formula's name, fields). The
+fields map each constant of the torque to 0, -1 or FREE: a free constant is a symbol in the formula."""
 
 
 def torques() -> Iterator[Named]:
@@ -96,8 +97,11 @@ def _gravity_gradient() -> Iterator[Named]:
 
 
 def _letters_of_books(torque: Matrix) -> list[dict[Symbol, Symbol]]:
-    """Return dictionaries from a torque's symbols to letters of books, such as {mean_motion: n, radius_1: n1, ..}."""
-    # only the torque of the gravity gradient has other letters in books
+    """Return the ways to write a torque in the letters of books, each as {symbol of the torque: letter}.
+
+    For instance {mean_motion: n, radius_1: n1, ..}. Only the gravity gradient has other letters in books, in two ways;
+    other torques give [{}].
+    """
     named = {symbol.name: symbol for symbol in torque.free_symbols}
     if "mean_motion" not in named:
         return [{}]

@@ -37,7 +37,8 @@ SECOND_ANGLE_OF_MATRIX = "second angle of ZXZ, and of ZYZ, of a rotation matrix,
 OF_ONE_ENTRY = (PITCH, SECOND_ANGLE_OF_MATRIX)
 """Names of the angles that one entry of a rotation matrix gives, as R_33 the second angle of ZXZ.
 
-Any single letter equals such a formula; so a claim means the angle only if its letter is named as an entry, R_33.
+Such a formula is one symbol, so that every claim ``angle = acos(letter)`` would match. A claim means the angle only if
+the letter has the name of a matrix entry, such as R_33.
 """
 
 GYROSCOPE = "torque on a gyroscope whose axis precesses"
@@ -230,8 +231,10 @@ def _angles() -> Iterator[Named]:
 
 
 def _euler_angles() -> Iterator[Named]:
-    """Yield yaw, pitch and roll, the angles of ZYX, and some angles of ZYZ, ZXZ and XYZ, from a unit quaternion or
-    matrix entries.
+    """Yield a named formula for each Euler angle that books compute from a rotation matrix or a quaternion.
+
+    From both: yaw, pitch and roll, the angles of ZYX. From a matrix: the three angles of ZYZ and of ZXZ. From a unit
+    quaternion: the second angle of XYZ.
     """
     yaw, pitch, roll = symbols.angles
     matrix = euler.dcm("ZYX")

@@ -59,8 +59,11 @@ def tops() -> Iterator[Named]:
 
 
 def _steady(effective: Expr, spin: Expr, weight: Expr) -> Iterator[Named]:
-    """Yield the rates of steady precession of a heavy top, and the torque that a given precession needs."""
-    # effective is the effective potential, spin omega_3 in terms of the rates of the angles, weight W or m g
+    """Yield the rates of steady precession of a heavy top, and the torque that a given precession needs.
+
+    ``effective`` is the effective potential of the top, ``spin`` is omega_3 as a formula in the rates of the angles,
+    and ``weight`` is W or m*g.
+    """
     rate = symbols.n
     held = {P_PHI: P_PSI * cos(THETA) + A * rate * sin(THETA) ** 2}
     # steady at the minimum of the effective potential

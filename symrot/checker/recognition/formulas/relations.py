@@ -86,8 +86,10 @@ def _top() -> tuple[Matrix, Expr]:
 
 
 def _steady() -> Iterator[Relation]:
-    """Yield conditions of steady precession under a weight or torque, with omega_3 or psi'; the least spin, the torque
-    of gravity, and fast nutation.
+    """Yield relations for the steady precession of tops and wheels.
+
+    These are the conditions for steady precession under a weight or a torque, in omega_3 and in psi', and relations for
+    the least spin, the torque of gravity, and the frequency of fast nutation.
     """
     _, kinetic = _top()
     along = kinetic.diff(THETA).subs(DTHETA, 0)  # A*theta'' at rest in theta, by Lagrange's equation

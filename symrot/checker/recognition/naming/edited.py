@@ -1,4 +1,4 @@
-"""Edits of a claim's formula that make it a known one."""
+"""Edits of a claim's formula, such as another sign, that turn the formula into one that symrot knows."""
 
 import re
 from collections.abc import Collection, Iterator, Mapping
@@ -128,9 +128,10 @@ def _exchanged(tree: Node, names: Mapping[str, str]) -> Node:
 
 
 def _with_all_terms_added(named: NamedFormula) -> Iterator[Edit]:
-    """Yield one edit, ``a + b + c``, for a claim ``a - b - c = 0``, with several minus signs and a number on one side.
+    """Yield an edit that makes all minus signs of a claim plus signs: ``a + b + c = 0`` for ``a - b - c = 0``.
 
-    Yield nothing for other claims.
+    The claim must have a number on one side, and on the other a sum with at least two minus signs; yield nothing for
+    other claims.
     """
     negative = [term for term in named.formula.args if term.kind == "neg"]
     if named.solve is None and named.side.kind == "number" and named.formula.kind == "sum" and len(negative) > 1:

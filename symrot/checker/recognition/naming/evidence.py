@@ -25,22 +25,16 @@ MANY_LETTERS = 5
 has at least this many letters; a shorter one may be a right formula for something else.
 """
 
-MANY_ENTRIES = 4
-"""A matrix, one fault away from a known matrix, is called faulty if it has at least this many letters, each counted as
-often as it occurs; one with fewer letters may be a right formula for something else.
+MANY_OCCURRENCES = 4
+"""A matrix that becomes a known matrix by one change is called faulty if at least this many letters occur in it; a
+letter counts as often as it occurs. A matrix with fewer letters may be a right formula for something else.
 """
 
 SAFE_BY_UNIT = ("exponent", "factor", "wrong_symbol", "extra_term", "missing_term")
-"""Codes of the faults that a wrong unit proves."""
+"""Codes of the faults that count as evident if the claim's formula has another unit than the known formula near it."""
 
 SURE_IF_STATED = ("sin_cos_swap", "half_angle", "double_half_angle", "exponent")
 """Codes of the faults that are evident if the context states what the letters of the formula mean."""
-
-OF_ANGLES = re.compile(r"angle rates of|angular velocity of [xyzXYZ]{3}\b")
-"""Pattern of the names of known formulas in Euler angles.
-
-A claim near one of these is never taken for a special case with two equal quantities, since books print none.
-"""
 
 
 def says_too_little(claim: Claim, named: NamedFormula, near: Near) -> bool:
@@ -66,12 +60,11 @@ def is_evident(claim: Claim, named: NamedFormula, near: Near) -> bool:
     count = len(letters | names_in(named.side)) if named.side.kind == "product" else quantities  # an equation
     count += is_steady(near.known.name) and TIME in [node for _, node in walk(named.formula)]  # t is a letter of it
     is_new = not quantities_in(near.tree) <= quantities_in(named.formula)
-    is_special = near.is_symmetric and not OF_ANGLES.search(near.known.name)
     is_component = _is_component_of_parameters(named, near) or _is_angle_of_entries(named, near)
     if is_new and near.code == "wrong_symbol" and is_component:
         return True
     if is_new and (
-        max(quantities, near.array_letters) < LEAST_SYMBOLS_EDITED or near.code == "missing_term" or is_special
+        max(quantities, near.array_letters) < LEAST_SYMBOLS_EDITED or near.code == "missing_term" or near.is_symmetric
     ):
         return False  # a special case: the missing letter is zero, or equal to another one
     if near.code in ("overall_sign", "sign_of_term") and re.fullmatch("lambda|sigma|s", named.name):
@@ -100,9 +93,9 @@ def is_evident(claim: Claim, named: NamedFormula, near: Near) -> bool:
         return False
     entries = [node for _, node in walk(named.formula) if node.kind in ("call", "name") and node.value in letters]
     is_matrix_given = any(node.value == "Matrix" for _, node in walk(named.formula))
-    if is_matrix_given and len(entries) >= MANY_ENTRIES:
+    if is_matrix_given and len(entries) >= MANY_OCCURRENCES:
         return True
-    if near.array_letters >= LEAST_SYMBOLS_EDITED and len(entries) + near.array_letters > 2 * MANY_ENTRIES - 2:
+    if near.array_letters >= LEAST_SYMBOLS_EDITED and len(entries) + near.array_letters > 2 * MANY_OCCURRENCES - 2:
         return True
     is_rotation = near.array_letters > 0 and near.known.name.startswith("rotation matrix")
     if is_rotation and re.fullmatch(r"[RCAQ](_\w+)?", named.name):
@@ -182,7 +175,10 @@ def _is_of_stated_flat_body(claim: Claim, near: Near) -> bool:
 
 
 def _is_component_of_quaternion(named: NamedFormula, near: Near) -> bool:
-    """Return whether a quaternion component has a wrong angle or function: beta_1 = e_1 sin(phi) for e_1 sin(phi/2)."""
+    """Return whether a claim gives a quaternion component with a wrong angle or function, as beta_1 = e_1 sin(phi).
+
+    ``near`` must be the known formula of this component, here e_1 sin(phi/2), and the fault one of angle or function.
+    """
     place = re.fullmatch(r"(beta|eta|epsilon|q)_?([0-4])", named.name)
     word, _, rest = near.known.name.partition(" component of the quaternion of axis")
     return (
@@ -202,9 +198,9 @@ def _is_entry_of_matrix(named: NamedFormula, near: Near) -> bool:
 
 
 def _is_angle_of_entries(named: NamedFormula, near: Near) -> bool:
-    """Return whether a claim gives a formula of three or more entries of a rotation matrix, and no other letters.
+    """Return whether a claim gives an angle of a rotation matrix by three or more entries and no other letters.
 
-    ``near`` must be a formula for an angle of such a matrix.
+    ``near`` is the known formula nearest to the claim's formula; its name must say that it gives such an angle.
     """
     letters = names_in(named.formula)
     is_of_entries = len(letters) >= LEAST_SYMBOLS_EDITED and all(re.fullmatch(ENTRY, letter) for letter in letters)

@@ -41,10 +41,12 @@ KNOWN_RATE = re.compile(r"d[a-z]+(_?\w+)?|(omega|Omega|w|n)(_?\w+)?")
 """Pattern of the symbols of known formulas for which the rate of an angle may stand, such as dphi and omega_3."""
 
 RATES = {"precession": "dphi", "nutation": "dtheta", "spin": "dpsi"}
-"""Word in a known formula's name, as in "momentum of precession" -> the symbol for the rate of this angle there."""
+"""Word for an Euler angle of a top, as in the name "momentum of precession" -> the symbol for the rate of the angle in
+known formulas."""
 
 RATES_OF_TOPS = ("precession", "nutation", "frequency")
-"""Words for rates of a top; a component of an angular velocity, such as omega_2 next to omega_1, is no such rate."""
+"""Words in the names of formulas for rates of a top. A claim about a component of an angular velocity, such as omega_2
+next to omega_1, does not mean these formulas."""
 
 OTHER_LENGTHS = (("R(_[12])?", r"[dD].*|[lLhH]|ell"), ("[abcLh]", r"[rR]"))
 """Pairs of patterns: symbols of known formulas, and letters that books never use for these symbols.
@@ -56,7 +58,8 @@ PARALLEL = re.compile("parallel.ax")
 """Pattern that occurs in the names of the formulas of the parallel-axis theorem."""
 
 OF_ROLL = re.compile(r"d?([pqr]|[Hh](_?\w+)?)")
-"""Pattern of an aircraft's rates and of letters of angular momentum: beside these, L may be the rolling torque."""
+"""Pattern of the rates p, q, r of an aircraft and of letters of its angular momentum, such as H_x. Only beside one of
+these letters can L mean a torque, the rolling moment."""
 
 RATES_OF_AIRCRAFT = {"p": "x1", "q": "y2", "r": "z3"}
 """Rate of an aircraft -> the two names of its axis in the body frame: p is about axis x, or 1."""
@@ -71,9 +74,10 @@ FIRST_ANGLE, LAST_ANGLE = r"(var)?phi|alpha|\w+_1", r"psi|gamma|\w+_3"
 
 
 def has_other_length(known: str, renaming: Iterable[tuple[str, str]]) -> bool:
-    """Return whether a claim has the letter of another length than a body's formula, as L for the radius R.
+    """Return whether a claim uses a letter that books never use for a length in a body's formula, as L for a radius R.
 
-    ``known`` is the name of the formula; ``renaming`` has pairs (symbol, letter of the claim).
+    ``known`` is the name of the formula; ``renaming`` has pairs (symbol of the formula, letter of the claim). Return
+    False for formulas other than moments of inertia and radii of gyration, and for elliptical bodies.
     """
     if re.match("moment of inertia of a|radius of gyration of a", known) is None or "ellip" in known:
         return False
@@ -124,8 +128,9 @@ def _is_of_other_angles(named: NamedFormula, known: Identification) -> bool:
 
 
 def is_unusual(known: Identification) -> bool:
-    """Return whether a known formula is for the space frame, though omega_1 or p in the claim usually is a component in
-    the body frame.
+    """Return whether a known formula is for the space frame, but its letters in the claim are usual for the body frame.
+
+    Such letters are omega_1 to omega_3, and p, q, r, for components of the angular velocity.
     """
     # books use omega_1, and p, q, r, for components in the body frame
     components = [new for old, new in known.mapping.items() if old in COMPONENTS_OF_OMEGA]
@@ -135,12 +140,14 @@ def is_unusual(known: Identification) -> bool:
 
 
 def keeps_places(named: NamedFormula, known: Identification) -> bool:
-    """Return whether a claim agrees with a known formula in axis, entry, angle and point: R_12 contradicts entry 13."""
+    """Return whether a claim's letters agree with a known formula in axis, matrix entry, angle and point of the body.
+
+    For instance, a claim about R_12 contradicts a formula for "entry 13 of" a matrix (row 1, column 3).
+    """
     momentum = re.match(r"momentum of (\w+)", known.name)
     angle = re.fullmatch(r"[pP]_?(?:var)?(phi|theta|psi)", named.name)
     if momentum and angle and MOMENTA[angle[1]] != momentum[1]:
         return False
-    # R_12 contradicts entry 13
     entry, own = re.match(r"entry ([1-3]{2}) of", known.name), re.fullmatch(ENTRY, named.name)
     if entry and own and own[1] not in (entry[1], entry[1][::-1]):
         return False
@@ -194,7 +201,10 @@ def _is_reversed(name: str, known: Identification) -> bool:
 
 
 def _is_component_of_rate(named: NamedFormula) -> bool:
-    """Return whether a claim's quantity is one component of an angular velocity, as omega_2 in a claim with omega_1."""
+    """Return whether a claim is about one component of an angular velocity, such as omega_2.
+
+    Its formula must have another component: omega_2 alone, without omega_1 or omega_3, may mean something else.
+    """
     stem = re.fullmatch(r"(omega|w|Omega)_?[1-3xyzif]", named.name)
     return stem is not None and any(
         re.fullmatch(rf"{stem[1]}_?[0-3xyzif]", other) and other != named.name for other in names_in(named.formula)
@@ -202,9 +212,9 @@ def _is_component_of_rate(named: NamedFormula) -> bool:
 
 
 def fits_context(context: Context, named: NamedFormula, known: Identification, letters: set[str]) -> bool:
-    """Return whether a known formula agrees with what the context states of a claim's quantity and ``letters``.
+    """Return whether the known formula ``known`` agrees with the context of the claim ``named``.
 
-    True without a context.
+    The context may say what the quantity of the claim and its ``letters`` mean. True without a context.
     """
     if not context:
         return True

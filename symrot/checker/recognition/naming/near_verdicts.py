@@ -50,14 +50,18 @@ MOST_SOLVED = 4
 """The largest number of letters for which an equation is solved, each time to compare it with known relations."""
 
 PER_NAME = 0.1
-"""What each renamed symbol adds to the cost of a known formula near a claim; the likeliest formula costs least."""
+"""What each symbol with another letter in the claim adds to the cost of a known formula that differs from the claim by
+one fault. The formula with the least cost is the likeliest one that the claim means."""
 
 PER_PLACE = 0.3
-"""What each contradiction to the quantity's name, such as omega_3 for a first component, adds to the same cost."""
+"""What each contradiction between the names of a known formula and of the claim's quantity adds to the formula's cost:
+"first component" contradicts omega_3."""
 
 AS_NEAR = 0.15
-"""A claim that is a known moment of inertia plus m d^2 may be right for a parallel axis, and is not called faulty if
-this moment costs at most this much more than the likeliest one near the claim.
+"""The largest difference of costs at which a claim counts as a moment of inertia about a parallel axis, not as faulty.
+
+Such a claim equals a known moment plus m d^2. Compared with this moment, its supposed fault may cost at most this much
+more than its fault compared with the likeliest known moment.
 """
 
 MOST_REPAIRS = 3
@@ -100,9 +104,9 @@ def _near_inside(claim: Claim, named: NamedFormula) -> Verdict | None:
 
 
 def _near_by_quantity(claim: Claim, named: NamedFormula) -> Verdict | None:
-    """Return the verdict "doubtful" if a change on the side of the quantity, k to k^2 in ``k = I/m``, makes it known.
+    """Return the verdict "doubtful" if a change on the side of the quantity makes the claim a formula known to symrot.
 
-    Otherwise return None.
+    For instance, k becomes k^2 in ``k = I/m``. Otherwise return None.
     """
     for changed in quantity_variants(named):
         if not is_evident_by_quantity(claim, named, changed):
@@ -189,8 +193,8 @@ def formulas_nearby(claim: Claim, named: NamedFormula) -> list[Near]:
 def _near(claim: Claim, named: NamedFormula) -> Verdict | None:
     """Return the verdict "doubtful" if a change of one part makes the claim's formula a known one.
 
-    Return "recognised" if it equals a known one when its letters have certain signs, such as a > 0, and None in other
-    cases.
+    Return "recognised" if the claim's formula, unchanged, equals a known one when its letters have certain signs, such
+    as a > 0, and None in other cases.
     """
     nearby = formulas_nearby(claim, named)
     of_bodies = [near for near in nearby if is_of_body(near.code, near.known.name)]
@@ -229,9 +233,10 @@ def _is_of_usual_frame(near: Near, others: Sequence[Sequence[Identification]]) -
 
 
 def _with_root(claim: Claim, named: NamedFormula, near: Near) -> tuple[Identification, ...]:
-    """Return (known formula,) if ``near.tree``, with a root of a sum, is proven equal to the known formula; else ().
+    """Return (known formula,) if a formula with a root of a sum is proven equal to a known formula; otherwise ().
 
-    The proof may need signs of letters: a*sqrt(1 - x/a^2) equals sqrt(a^2 - x) for a > 0.
+    The formula ``near.tree`` is the claim's formula after at most one change, ``near.known`` the known formula. The
+    proof may need signs of letters: a*sqrt(1 - x/a^2) equals sqrt(a^2 - x) for a > 0.
     """
     ending = ending_of(near.known.name)
     if named.solve is None or ending not in ("", SQUARED):

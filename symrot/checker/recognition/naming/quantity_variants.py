@@ -1,7 +1,8 @@
-"""Variants of a claim: a usual fault corrected on the side of its quantity, or the squares of vectors written out.
+"""Variants of a claim ``quantity = formula``: the quantity with a usual fault corrected, or squares of vectors written
+out.
 
-``k = I/m`` becomes ``k^2 = I/m``. The square ``sigma^2``, beside sigma_1, sigma_2 and sigma_3, becomes the sum of the
-squares of these components.
+For the radius of gyration k, ``k = I/m`` becomes ``k^2 = I/m``: the square was missing. In a formula with sigma_1,
+sigma_2 and sigma_3, components of a vector, ``sigma^2`` becomes the sum of their squares.
 """
 
 import re
@@ -70,7 +71,7 @@ def quantity_variants(named: NamedFormula) -> Iterator[QuantityVariant]:
 def without_inverse(named: NamedFormula) -> NamedFormula | None:
     """Return the claim ``cos(theta/2) = u`` for ``theta = 2*acos(u)``; None for a formula of another form.
 
-    Its ``solve`` puts a formula in place of u in ``2*acos(u)``.
+    The ``solve`` of the returned claim puts a formula in place of u in ``2*acos(u)``.
     """
     # acos(u) has no value at most random values of u
     factors = named.formula.args if named.formula.kind == "product" else (named.formula,)

@@ -17,7 +17,8 @@ RARE = ("annulus", "thin tube", "conical shell", "elliptical")
 """Bodies whose moments a faulty formula is unlikely to mean."""
 
 AXES = ("x1Ap", "y2Bq", "z3Cr")
-"""The last letters of symbols that belong to one axis; p, q and r are the rates of an aircraft."""
+"""For each of three axes, the last characters of symbols that belong to the axis: omega_x, I_1, A and p belong to the
+first axis. The letters p, q and r are the rates of an aircraft."""
 
 
 def misfit_of(name: str, known: str) -> float:

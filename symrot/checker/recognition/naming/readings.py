@@ -38,7 +38,9 @@ without usual meaning.
 """
 
 LEAST_SYMBOLS_OF_MOTION = 3
-"""LEAST_SYMBOLS_RELATED for an equation of motion, which has the second time derivative and sine or cosine of an angle.
+"""The smallest number of symbols in an equation of motion that is compared with known relations.
+
+An equation of motion has the second time derivative of an angle, and the sine or cosine of the same angle.
 """
 
 MOST_TERMS = 5000

@@ -98,8 +98,11 @@ def verdict_on_name(claim: Claim, named: NamedFormula, repair: bool) -> Verdict:
 
 
 def _axes_of_symmetry(readings: Sequence[Identification]) -> str:
-    """Return "1" or "2" if all ``readings`` are for a body that is symmetric about this axis; otherwise ""."""
-    # I_2 twice in (I_1 w_1, I_2 w_2, I_2 w_3) may be a misprint; books choose axis 3 for the axis of symmetry
+    """Return "1" if all ``readings`` are formulas for a body that is symmetric about axis 1, "2" for axis 2, else "".
+
+    Also "" for axis 3, which books usually choose as the axis of symmetry.
+    """
+    # I_2 twice in (I_1 w_1, I_2 w_2, I_2 w_3) may be a misprint
     axes = {axis[1] if (axis := re.search("symmetric about axis ([12])$", known.name)) else "" for known in readings}
     return axes.pop() if len(axes) == 1 else ""
 

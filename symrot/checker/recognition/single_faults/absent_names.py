@@ -22,7 +22,7 @@ MATRIX_ENTRY = re.compile("R_[1-3]{2}")
 """Pattern of the name of a rotation matrix's entry in known formulas, such as R_12."""
 
 USUAL = {"c_3": "l", "mu": "m", "omega_3": "omega", "domega_3": "alpha"}
-"""Name in known formulas -> the name that books use where it is the only quantity of its kind."""
+"""Symbol in known formulas -> the letter that books use if there is one such quantity only: omega, not omega_3."""
 
 
 def _absent_of_product(known: str, renaming: dict[str, str | None]) -> str | None:
@@ -67,11 +67,12 @@ def _numbered_angle(known: str, mine: str, other: str) -> str:
 
 
 def absent_name(known: str, renaming: dict[str, str | None], unused: Collection[str] = ()) -> tuple[str, bool]:
-    """Return (name, is_implied) for the symbol ``known`` of a known formula that a claim lacks.
+    """Return (name, is_implied): the name that a claim would have for a symbol ``known`` which the claim lacks.
 
-    ``renaming`` maps the symbols of the known formula to the claim's names. The name is implied if other names of the
-    claim show it: w_1 and w_2 imply w_3. So may the claim's ``unused`` letters, which stand for no symbol of the known
-    formula: an unused I_1 implies I_3 for the moment of inertia C.
+    The symbol belongs to a known formula with which the claim is compared; ``renaming`` maps symbols of that formula to
+    the claim's names, or to None. The name is implied if other names of the claim show it: w_1 and w_2 imply w_3.
+    Letters of the claim that stand for no symbol of the known formula (``unused``) may show it too: I_1 implies I_3 for
+    the moment of inertia C.
     """
     for mine, other in renaming.items():
         if other is not None and (numbered := _numbered_angle(known, mine, plain_name(other))):

@@ -27,7 +27,8 @@ MOST_TERMS = 6
 MOST_EDITS = 700
 """The largest number of edits of one formula that are evaluated."""
 CLOSE = 1e-8
-"""The largest relative difference between values that count as equal, for entries of matrices and for their sums."""
+"""The largest relative difference between numbers that count as equal: entries of two matrices, or the sums of all
+entries of two matrices, by which edited formulas are looked up."""
 OPERATIONS = ("skew", "cross", "dot", "qmul", "conjugate", "trace")
 """Names of the functions that take vectors, matrices or quaternions."""
 LEFT_OUT = ("extra_term", "overall_sign")

@@ -55,7 +55,7 @@ class Near(NamedTuple):
 
 
 class Search(NamedTuple):
-    """The search for one fault of a claim's formula: what is computed once and compared with every known formula."""
+    """Data for finding one fault of a claim's formula, computed once and compared with every known formula."""
 
     named: NamedFormula
     letters: Letters
@@ -81,14 +81,18 @@ class Search(NamedTuple):
 
 
 CLOSE = 1e-8
-"""A changed part whose value at the first test point differs from the needed value by at most this, relatively, is
-compared with the needed values at all test points."""
+"""A change of a part of the formula is tested at all points if its value at the first point is close to the needed one.
+
+The needed value makes the whole formula right. CLOSE is the largest relative difference from the needed value.
+"""
 
 
 def search_of(claim: Claim, named: NamedFormula, letters: Letters, values: Values) -> Search:
-    """Return the search for faults of a claim's formula, which has the ``values`` at the points of ``letters``.
+    """Return the data for comparing a claim's formula with known formulas: what would one change of a part give?
 
-    The changes of each part, with their values, are computed here once for all known formulas.
+    The possible changes of each part of the formula, such as another sign, and their values at test points are computed
+    here once for all known formulas. ``letters`` has the formula's symbols and the test points, ``values`` are the
+    formula's values there.
     """
     everything = Letters({**letters.atoms, LACKING: RANDOM}, letters.angles, [
         replace(point, symbols={**point.symbols, str(LACKING.value): value})

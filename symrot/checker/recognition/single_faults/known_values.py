@@ -45,7 +45,10 @@ def quantity_node(named: NamedFormula) -> Node:
 
 @cache
 def formulas_of_quantities() -> tuple[Known, ...]:
-    """Return the known formulas that have names of their own: without steps of derivations and without relations."""
+    """Return the known formulas that each give one named quantity, such as a kinetic energy.
+
+    Left out are the sides of derivation steps, and relations: equations, stored as left side minus right side.
+    """
     formulas = [known for group in by_fingerprint().values() for known in group]
     return tuple(known for known in formulas if not known.is_step and not known.is_relation)
 
@@ -62,7 +65,7 @@ _BUILT_IN = {"sin", "cos", "tan", "cot", "sec", "csc", "sqrt", "pi", "Matrix", "
 
 @cache
 def ids_of_known(known: Known) -> frozenset[int]:
-    """Return the ids of all nodes of a known formula, whose values a test point stores."""
+    """Return the ``id`` of every node in the tree of a known formula; a test point stores the values of these nodes."""
     return ids_of_nodes(tree_of(known))
 
 
@@ -94,19 +97,22 @@ def tape_of(known: Known) -> Tape | None:
 
 @dataclass
 class KnownValues:
-    """The values of a known formula at points, which give its symbols the values of a claim's letters."""
+    """The values of a known formula at test points.
+
+    ``symbols`` has a dictionary for each point: symbol of the formula -> its value, usually that of a claim's letter.
+    """
 
     known: Known
-    symbols: Sequence[Mapping[str, float]]  # one dictionary for each point
+    symbols: Sequence[Mapping[str, float]]
 
     @cached_property
     def points(self) -> list[PointOfLetters]:
-        """The points at which the tree of the formula can be evaluated."""
+        """The test points, one for each dictionary in ``symbols``, as objects that evaluate the tree of the formula."""
         return [PointOfLetters(dict(values), {}, {}, ids_of_known(self.known)) for values in self.symbols]
 
     @cached_property
     def on_tape(self) -> list[list[float]] | None:
-        """The values of all parts of the formula at each point, computed by its tape (list of operations).
+        """For each point, the list of the values of all parts of the formula, computed by its tape (operations).
 
         None if the formula has no tape, or no value at one of the points.
         """
@@ -131,7 +137,7 @@ class KnownValues:
         yield from filter(is_superfluous, parts(Valued(tree_of(self.known), self.points), needed))
 
     def with_other_signs(self) -> Iterator[Values]:
-        """Yield the values with the signs of the products of inertia reversed, if the formula has any."""
+        """Yield the formula's values with the signs of its products of inertia reversed; nothing if it has none."""
         names = [name for name in names_of(self.known) if PRODUCT_OF_INERTIA.fullmatch(name)]
         if names:
             changed = [{**values, **{name: -values[name] for name in names}} for values in self.symbols]
@@ -140,7 +146,10 @@ class KnownValues:
 
 
 def views(known: Known, values: Values) -> Iterator[Values]:
-    """Yield the values of a known formula and its variants: transposed, doubled, or with a quaternion's scalar last."""
+    """Yield ``values``, and ``values`` transposed, doubled, or with a quaternion's scalar last, where this makes sense.
+
+    Only the values of square matrices are transposed, and only those of ``scaled`` formulas doubled.
+    """
     yield values
     if not is_matrix(values[0]):
         return
@@ -160,14 +169,15 @@ LAST = (1, 2, 3, 0)
 """The rows of a scalar-first quaternion in the order that puts its scalar last."""
 
 RANDOM = (0.7310585786, 1.1752011936, 0.4812118251)
-"""The values of a symbol that a claim lacks, one for each test point."""
+"""The values, one for each test point, of a symbol of a known formula if the claim has no letter for the symbol."""
 
 
 def needed_values(named: NamedFormula, known: Known, target: Values, letters: Letters) -> Values | None:
-    """Return the values that the claim's formula needs for its quantity to have the values ``target``.
+    """Return the values that the claim's formula should have if ``target`` are the values of the known formula.
 
-    For the claim ``2*T = ..`` these are twice the values of ``target``. None if no values of the formula do so: in
-    ``k^2 = ..`` no formula gives k imaginary values. None also if the claim is not solved for its quantity.
+    For the claim ``2*T = ..`` and a known formula for T, these are twice the values of ``target``. Return None if the
+    claim is not solved for its quantity, or if the quantity would have no real value: the claim is solved for k, and
+    the known formula, one for k^2, is negative.
     """
     function = _FUNCTIONS_OF_ENDINGS.get(ending_of(known.name))
     if function is None:
@@ -222,4 +232,7 @@ _FUNCTIONS_OF_ENDINGS: dict[str, Callable[[Any], Any]] = {
     ", 2 acos": _multiple_of_arc(2, math.acos), ", asin": _multiple_of_arc(1, math.asin),
     ", atan2": _multiple_of_arc(1, math.atan2), ", 2 atan2": _multiple_of_arc(2, math.atan2),
 }  # fmt: skip
-"""Ending of the name of a known formula -> the function that gives the quantity from the formula's value."""
+"""Ending of a known formula's name -> function from the formula's value to the value of the quantity.
+
+For a formula for k^2, whose name ends with ``, squared``, the function is the square root.
+"""

@@ -1,7 +1,7 @@
-"""The letters of a formula that may have a fault: symbols, rates and angles, with random values at some points.
+"""The letters (symbols, rates and angles) of a claim's formula, with random values at the test points.
 
-The values obey the equations among the claim's hypotheses. A name with a definition, such as c1 for cos(alpha), has
-the definition's value.
+The search for a fault in the formula uses them. The values obey the equations among the claim's hypotheses. A name
+with a definition, such as c1 for cos(alpha), has the definition's value.
 """
 
 from collections.abc import Mapping
@@ -21,17 +21,17 @@ __all__ = ["POINTS", "ids_of_nodes", "is_atom", "letters_of_formula", "nodes_of"
 MOST_DRAWS = 40
 """The largest number of random points that are drawn to find ``POINTS`` of them where a formula has a value."""
 MOST_DRAWS_WITH_ROOTS = 400
-"""The number of random points for a claim's formula with roots.
+"""The number of random points that are drawn for a claim's formula with roots.
 
-Of these, the points with the largest values under the roots are taken: a known formula that differs from it by one
-fault, and so has other values under its roots, is likely to be defined there too.
+The points with the largest values under the roots are used: a known formula that differs from the claim's formula by
+one fault, and so has other values under its roots, is likely to be defined at these points too.
 """
 POINTS = 3
 """The number of points at which formulas are compared."""
 MANY = 9
-"""The smallest number of letters in a formula that is tested for the letters on which it depends.
+"""From this number of letters on, a formula is tested for letters on which its value does not depend.
 
-It may contain a matrix of 3 x 3 letters and depend only on some of them, as the trace does.
+A formula with a matrix of 3 x 3 letters may depend only on some of the letters, as the trace does.
 """
 
 
@@ -98,9 +98,10 @@ def _symbols_of(definitions: Mapping[str, Node], numeric: NumericFilter) -> set[
 
 
 def _active(named: NamedFormula, atoms: dict[Node, Values], places: list[PointOfLetters]) -> dict[Node, Values]:
-    """Return the ``atoms`` that change a formula's value: only the diagonal entries for the trace of a matrix.
+    """Return the letters among ``atoms`` on which the claim's formula depends: for a trace, only the diagonal entries.
 
-    Atoms on the left side stay too. All ``atoms`` are returned if there are fewer than MANY.
+    Letters that are factors or arguments of the claim's left side are returned too. If there are fewer than MANY
+    ``atoms``, all are returned.
     """
     formula = named.formula
     if len(atoms) < MANY:

@@ -28,7 +28,10 @@ def is_symmetric_body(absent: str, letter: str, renaming: dict[str, str | None],
 
 
 def is_shifted_moment(actual: Values, known: Values, letters: Letters) -> bool:
-    """Return whether ``actual`` are the values ``known`` of a moment of inertia plus m d^2, for a parallel axis."""
+    """Return whether the values ``actual`` are those of a moment of inertia, ``known``, plus m d^2 (parallel axis).
+
+    m is a letter of the claim. The distance d is a rational multiple of another letter, or has two such components.
+    """
     if any(map(is_matrix, (*actual, *known))) or not all(known):
         return False
     ratios = [value / other for value, other in zip(actual, known, strict=True)]
@@ -47,12 +50,12 @@ def is_shifted_moment(actual: Values, known: Values, letters: Letters) -> bool:
 
 
 def _share(added: Sequence[float], mass: Values, length: Values) -> Fraction | None:
-    """Return the rational number k with ``added`` = k m d^2 at all points, or None if there is none."""
+    """Return the simple fraction k with ``added`` = k * ``mass`` * ``length``^2 at all test points, or None."""
     return rational([value / (m * d * d) for value, m, d in zip(added, mass, length, strict=True)])
 
 
 def _shares(added: Sequence[float], mass: Values, lengths: Sequence[Values]) -> list[Fraction | None]:
-    """Return simple fractions [k, l] with ``added`` = m (k a^2 + l b^2) at all points, for the ``lengths`` a and b.
+    """Return simple fractions [k, l] with ``added`` = m (k a^2 + l b^2) at all points, for mass m and lengths a and b.
 
     A number that is no simple fraction is replaced by None; [None] if no k and l fit.
     """

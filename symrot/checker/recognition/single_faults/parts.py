@@ -1,4 +1,4 @@
-"""Faults of single parts of a formula: the value that a part should have, and the short change that gives it.
+"""Faults of single parts of a formula: the value that a part should have, and short changes to this value.
 
 If the right values of a sum and of all its terms but one are known, the right values of this term follow; likewise for
 factors and arguments. So the search goes inward from the whole formula. Its results are not yet proven.
@@ -101,7 +101,7 @@ def values_of(node: Node, points: Sequence[Point]) -> Values | None:
 
 @dataclass(eq=False)
 class Valued:
-    """A part of a formula with its values at test points, each computed once, however often the search passes it."""
+    """A part of a formula with its values at the test points; each value is computed only once."""
 
     node: Node
     points: Sequence[Point]
@@ -121,7 +121,10 @@ class Valued:
 
     @cached_property
     def entries(self) -> Mapping[int, "Valued"]:
-        """The entries of a written-out matrix or list by their numbers, counted row by row; empty for other parts."""
+        """{number: entry} for a written-out matrix or list, numbered row by row; empty for other parts.
+
+        An entry without a node of its own, such as the zeros of ``diag(a, b, c)``, is left out.
+        """
         paths = matrix_entries(self.node) or (
             {n: (n,) for n in range(len(self.node.args))} if self.node.kind == "list" else {}
         )
@@ -129,7 +132,9 @@ class Valued:
 
     @cached_property
     def arguments(self) -> Sequence[tuple["Valued", "Inward"]]:
-        """Pairs (argument of ``node``, function from the values that ``node`` should have to those of the argument).
+        """Pairs (argument of ``node``, function that computes the values that this argument should have).
+
+        The function takes the values that ``node`` should have, and assumes that its other arguments are right.
 
         Empty if there is no such function for the kind of ``node``, or if an argument has no value at a test point.
         """
@@ -144,17 +149,17 @@ class Valued:
 
 
 Inward = Callable[[Values], Values | None]
-"""A function from the values that an operation should have at the test points to those that an argument should have.
+"""A function from the values that an operation should have at the test points to the values of one of its arguments.
 
-For a in a + b, the function subtracts the values of b. It returns None if no values of the argument fit.
+For the argument a of a + b, the function subtracts the values of b. It returns None if no values of the argument fit.
 """
 
 
 def _inward(function: "OfArgument", by_point: Sequence[Sequence[Any]], place: int) -> Inward:
-    """Return the function from the values that an operation should have to those of its argument number ``place``.
+    """Return a function from the values that an operation should have to the values that one argument should have.
 
-    ``by_point`` has the present values of all arguments at each test point. ``function`` is the entry of ``_INWARD``
-    for the operation.
+    ``place`` is the index of the argument, and ``by_point`` has the present values of all arguments at each test point.
+    ``function`` solves the operation for an argument at one point; it comes from the table ``_INWARD``.
     """
     others = [[value for n, value in enumerate(own) if n != place] for own in by_point]
     if not any(is_matrix(value) for own in by_point for value in own):
@@ -178,10 +183,10 @@ def _inward(function: "OfArgument", by_point: Sequence[Sequence[Any]], place: in
 
 
 def parts(whole: Valued, needed: Values) -> Iterator[Part]:
-    """Yield parts of a formula, each with the values that give the formula ``whole`` the values ``needed``.
+    """Yield the parts of the formula ``whole``, each with the values that this part should have.
 
-    Only one part is changed at a time: in a + b, a should have the needed value minus b. Parts for which no values can
-    be computed, such as x in sin(x), are left out.
+    If this part alone changes to these values, the formula gets the values ``needed``: in a + b, a should have the
+    needed value minus b. Parts for which no values can be computed, such as x in sin(x), are left out.
     """
     values = whole.values
     if values is None or [*map(shape_of, values)] != [*map(shape_of, needed)]:
@@ -210,10 +215,10 @@ def _wrong_row(values: Values, needed: Values) -> int | None:
 
 
 def _row_of_matrix(whole: Valued, needed: Values, row: int) -> Iterator[tuple[Valued, Values]]:
-    """Yield (entry, values that it should have) for entries in one row of the matrix in ``whole``.
+    """Yield (entry, values that it should have) for the entries in one row of the matrix in ``whole``.
 
-    ``whole`` is a matrix times a column; it has the values ``needed`` if one entry changes so. Entries that multiply a
-    zero of the column are left out.
+    ``whole`` is a matrix times a column. If one entry alone changes to its values, the product gets the values
+    ``needed``. Entries that multiply a zero of the column are left out.
     """
     factors = whole.node.args
     place, matrix = next(((n, factor) for n, factor in enumerate(factors) if matrix_entries(factor)), (0, whole.node))

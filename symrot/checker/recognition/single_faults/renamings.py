@@ -29,12 +29,16 @@ RADIUS = re.compile(r"[rR](_?\w+)?|a")
 COORDINATES = ("x", "y", "z")
 
 UNUSUAL = 2
-"""Number added to the count of changed names where a radius is renamed to another length, as r to h, or the reverse."""
+"""Number that `strangeness` adds to its count of changed names for each radius that is renamed to another length.
+
+The same number is added for another length that is renamed to a radius.
+"""
 
 MOST_STEPS = 400
 """Largest number of search steps for the renamings of one known formula in which each symbol gets a name.
 
-The same limit holds for all its renamings together in which one symbol, lacking in the claim, gets no name.
+For renamings that leave one symbol without a name, since the claim lacks it, the search has the same number of steps
+again. They are shared equally among the symbols that may be left out.
 """
 MOST = 6
 """The largest number of renamings of one known formula that `renamings` returns."""
@@ -102,7 +106,7 @@ def _has_letter_of(name: str, other: str) -> bool:
 
 
 def strangeness(renaming: dict[str, str | None]) -> int:
-    """Return how many names a renaming changes; a change between a radius and another length counts three times."""
+    """Return how many names a renaming changes; a change of a radius to another length, or back, counts three times."""
     changed = [name for name, other in renaming.items() if other is None or plain_name(other) != name]
     lengths = [name for name in changed if UNIT_OF_NAME.get(name) == "m" and name not in COORDINATES]
     unusual = [name for name in lengths if (other := renaming[name]) is not None

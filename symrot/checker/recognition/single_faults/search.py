@@ -74,7 +74,11 @@ def near_formulas(claim: Claim, named: NamedFormula, fits: Callable[[Known], boo
 def _pairs(
     claim: Claim, named: NamedFormula, search: Search, fits: Callable[[Known], bool]
 ) -> Iterator[tuple[Known, Renaming]]:
-    """Yield (known formula, renaming of its symbols to the claim's letters) for all that are compared with a claim."""
+    """Yield the pairs (known formula, renaming of its symbols to the claim's letters) to be compared with a claim.
+
+    The formulas are those for which ``fits`` is true, and relations solved for the claim's quantity. Formulas that
+    differ much from the claim's are skipped: a number for a matrix, or two symbols more.
+    """
     letters = search.letters
     names, quantity = [text_of(atom) for atom in letters.atoms], text_of(quantity_node(named))
     inside = {node for angle in letters.angles for node in nodes_of(angle)}

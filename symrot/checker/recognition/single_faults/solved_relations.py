@@ -22,7 +22,8 @@ SQUARED = ", squared"
 class SolvedRelation(NamedTuple):
     """A known relation solved for the symbol ``name``: ``known.text`` is the formula for this symbol.
 
-    If ``known.name`` ends with ", squared", ", acos" or ", asin", it is the formula for its square, cosine or sine.
+    If ``known.name`` ends with ", squared", ", acos" or ", asin", ``known.text`` is the formula for the square, the
+    cosine or the sine of this symbol.
     """
 
     name: str
@@ -40,9 +41,10 @@ class Solution(NamedTuple):
 
 @cache
 def solved_relations() -> tuple[SolvedRelation, ...]:
-    """Return the known relations, each solved for every symbol that is a factor of its terms, or an angle.
+    """Return the known relations (equations), each solved for every symbol that is a factor of each term with it.
 
-    Left out are symbols in two different powers or in a root, and angles outside of their only cosine or sine.
+    The factor must have the same exponent, 1 or 2, in all these terms, and a term without it must exist. Relations are
+    solved for an angle if it occurs only in its cosine or only in its sine, and this is such a factor with exponent 1.
     """
     solved = []
     for known in (known for group in by_fingerprint().values() for known in group if known.is_relation):
@@ -126,7 +128,8 @@ def _terms(tree: Node) -> list[Node]:
 def _solution(terms: Sequence[Node], letter: Node) -> Solution | None:
     """Return the solution of ``sum of terms == 0`` for a letter w.
 
-    None unless each term that contains w has it as a factor, in all of them w or in all w^2, and there are other terms.
+    Return None if w is in no term or in every term, or if a term contains w otherwise than as a factor w or w^2. None
+    also if w is a factor of one term and w^2 of another.
     """
     with_letter = [term for term in terms if letter in (node for _, node in walk(term))]
     rest = [negated(term) for term in terms if term not in with_letter]

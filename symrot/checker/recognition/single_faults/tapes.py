@@ -1,7 +1,7 @@
 """Scalar formulas as tapes: lists of operations, each after its arguments, for many evaluations of one formula.
 
-One pass along the tape gives the value of every part of the formula. One pass back, from the whole inward, gives the
-value that each part should have if the whole should have another value, and only this part is wrong.
+One pass along the tape gives the value of every part of the formula. One pass back starts from a value that the formula
+should have instead, and gives the value that each part should have if only this part is wrong.
 """
 
 import math
@@ -22,7 +22,7 @@ INVERSES: dict[str, Callable[[float], float]] = {
 }  # fmt: skip
 """Name of a function -> its inverse, which computes the argument from the value that the call should have."""
 SLACK = 1000.0
-"""Factor by which the tolerance ``CLOSE`` is larger in this quick test than in the comparison that follows."""
+"""Tolerance of the quick test `Tape.may_have_too_much`, in units of ``CLOSE``, the tolerance of the final test."""
 
 
 class Operation(NamedTuple):

@@ -15,9 +15,9 @@ from symrot.checker.units.units import read_unit
 __all__ = ["has_other_unit"]
 
 UNITS = {"[kg]": 1.37, "[m]": 1.61, "[s]": 0.83}
-"""Base unit -> the arbitrary factor from numbers in this unit to numbers in an invented unit.
+"""Base unit -> arbitrary factor that converts numbers in this unit to an invented unit.
 
-The values of two formulas with different units change by different factors from SI units to the invented units.
+After this conversion of the letters, the values of formulas with different units have changed by different factors.
 """
 
 
@@ -62,7 +62,7 @@ def has_other_unit(named: NamedFormula, known: Known, nodes: dict[str, Node], le
 
 
 def _scale(unit: str | None) -> float | None:
-    """Return the factor from a number in the SI unit ``unit`` to one in the invented units of ``UNITS``.
+    """Return the factor that converts a number in the SI unit ``unit`` to the invented units of ``UNITS``.
 
     For "m/s" it is 1.61/0.83, as ``UNITS`` has 1.61 for m and 0.83 for s. Return None if ``unit`` is None.
     """

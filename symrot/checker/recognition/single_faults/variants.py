@@ -1,4 +1,4 @@
-"""Changes of one part of a formula that undo usual faults, each with the values of the changed part."""
+"""Changes of one part of a formula that undo usual faults, each with the values of the part after the change."""
 
 import math
 from collections.abc import Callable, Iterator
@@ -21,23 +21,24 @@ FUNCTIONS: dict[str, Callable[[float], float]] = {
     "sec": lambda x: 1 / math.cos(x), "csc": lambda x: 1 / math.sin(x),
 }  # fmt: skip
 LACKING = Node("name", "?")
-"""A symbol of a known formula that a claim lacks, under a name that no text can contain."""
+"""Placeholder for a symbol of a known formula that a claim lacks: a name that no text can contain."""
 
 MULTIPLES = {Fraction(2): "double_half_angle", Fraction(1, 2): "half_angle"}
 """Factor that is missing in an angle, as 2 in sin(x) for sin(2*x) -> the code of this fault."""
 
 
 class Variant(NamedTuple):
-    """A change of a part that undoes a usual fault, with the values of the changed part."""
+    """A change of a formula's part that undoes a usual fault, and the changed part's values at the test points."""
 
     change: Correction
     values: Values
 
 
 def variants(node: Node, parent: str, letters: Letters) -> list[Variant]:
-    """Return the changes of a part that undo usual faults, each with the values of the changed part.
+    """Return the changes of the part ``node`` that undo usual faults, each with the part's values after the change.
 
-    ``parent`` is the kind of the node above the part. Empty if the part is a matrix, or is 0 at a test point.
+    The values are those at the points of ``letters``; ``parent`` is the kind of the node above. The list is empty if
+    the part is a matrix, or is zero or undefined at one of the points.
     """
     values = values_of(node, letters.points)
     if values is None or not all(isinstance(value, float) and value for value in values):

@@ -47,7 +47,7 @@ def edits_of_sum(node: Node, matrices: Callable[[Node], bool]) -> Iterator[PartE
 
 
 def bracketed(terms: Sequence[Node]) -> Iterator[Node]:
-    """Yield sums with brackets that may be missing: ``(a - b)*c`` for ``a - b*c``, ``c*(a - b)`` for ``c*a - b``."""
+    """Yield the sum of ``terms`` with brackets that it may have lost: ``(a - b)*c`` for the terms of ``a - b*c``."""
     for first, last in itertools.combinations(range(len(terms)), 2):
         before, after = terms[:first], terms[last + 1 :]
         start, is_negative = (terms[first].args[0], True) if terms[first].kind == "neg" else (terms[first], False)
