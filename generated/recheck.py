@@ -219,7 +219,10 @@ class Arithmetic:
 
 
 class AnyFunctions(Arithmetic):
-    """An arithmetic of exact fractions: functions have random values, and choices are means with random weights."""
+    """An arithmetic of exact fractions in which functions such as sine have random values.
+
+    A conditional ``a < b ? x : y`` is a mean of x and y, with a random weight that depends on a and b alone.
+    """
 
     def __init__(self):
         super().__init__()
@@ -852,7 +855,12 @@ class CReader(Reader):
         return Parameter(name, "value", 1, True)
 
     def loops(self):
-        """Read the loops over samples; return their form ("each sample", "spans" or "blocks") and their bodies."""
+        """Read the loops over samples; return a pair (form, list of the loops' bodies).
+
+        The form is "each sample" (one loop over all samples), "spans" (for each run of samples two loops, each for
+        some outputs) or "blocks" (for each run a loop with fast sine and cosine, and one that repeats it with <math.h>
+        if an angle is too large).
+        """
         if self.accept(INDEPENDENT):
             self.take(EACH_SAMPLE)
             bodies = [self.body()]
@@ -971,7 +979,7 @@ def check_shape(value, shape, place):
     else:
         need(isinstance(value, dict), f"{place}: expected an object, as the schema says, got {quoted(value)}")
         for key in value if str in shape else shape:
-            need(key in value, f"{place}: expected {key!r}, as the schema says, and it is missing")
+            need(key in value, f"{place}: expected {key!r}, as the schema says, but it is missing")
             check_shape(value[key], shape[str] if str in shape else shape[key], f"{place}.{quoted(key)[1:-1]}")
 
 
@@ -1009,12 +1017,12 @@ def certified(path):
     need(
         data["schema"] == "symrot.certificate/1",
         f"the schema is {quoted(data['schema'])}: expected symrot.certificate/1, the certificate of a kernel; "
-        "`symrot audit` checks those of steps",
+        "`symrot audit` checks the certificates of steps",
     )
     sealed = {key: value for key, value in data.items() if key != "seal"}
     text = json.dumps(sealed, sort_keys=True, separators=(",", ":"))
     seal = sha256(text.encode()).hexdigest() == data["seal"]
-    need(seal, "the text was changed after it was sealed: expected a valid seal")
+    need(seal, "the certificate was changed after it was sealed: expected 'seal' to be the SHA-256 of its other parts")
     name, files = data["kernel"], data["files"]
     right = re.fullmatch(r"[A-Za-z]\w*", name, re.ASCII) and path.name == f"{name}.cert.json"
     need(
@@ -1045,7 +1053,7 @@ def defined_functions(definitions):
     functions = {}
     for name, text in definitions:
         new = is_name(name) and name not in functions
-        need(new, f"{quoted(name)} is already in use: expected a name without a meaning for a function")
+        need(new, f"{quoted(name)} is already in use: expected a new name for a function")
         parameters = [letter for letter in "xyzw" if re.search(rf"\b{letter}\b", text)]
         need(parameters and parameters == [*"xyzw"][: len(parameters)], f"{name}: expected a function of x, or of x, y")
         reader = FormulaReader(text, f"function {name}", functions, ("pi", *parameters))
@@ -1142,7 +1150,11 @@ def check_law(law, specification, points):
             # An analytic expression that is not identically zero passes at a random point with negligible probability.
             # ``size`` is its value if all symbols are random and unrelated.
             small = min(max(abs(size) / 10**60, Decimal("1e-70")), Decimal("1e-40"))
-            need(abs(rest) <= small, f"{place} does not follow from formulas: expected 0 to 60 digits, got {rest:.3}")
+            need(
+                abs(rest) <= small,
+                f"{place} does not follow from the formulas: expected 0 at a random point, computed with 60 digits, "
+                f"got {rest:.3}",
+            )
 
 
 # --- series and constants ---------------------------------------------------------------------------------------------
@@ -1292,7 +1304,7 @@ def check_formulas(name, kernel, data, point):
         if kernel.shape == "spans":
             need(
                 not computed.keys() & outputs.keys(),
-                f"{name} does not compute its formulas: expected each output in one loop",
+                f"{name} does not compute its formulas: expected each output in one of the two loops only",
             )
             computed |= outputs
         else:
@@ -1336,7 +1348,7 @@ def point_of_box(data, specification, real):
     numbers = Decimals()
     names, inputs = Names(numbers), {}
     for place, symbol in specification.symbols.items():
-        need(place in bounds["box"], f"rounding.box: expected a range of {quoted(place)}, and it is missing")
+        need(place in bounds["box"], f"rounding.box: expected a range of {quoted(place)}, but it is missing")
         low, high = (hexadecimal(end, f"rounding.box.{place}") for end in bounds["box"][place])
         need(
             -math.inf < low <= high < math.inf,
@@ -1439,7 +1451,7 @@ HEADER_END = """#ifdef __cplusplus
 def check_header(name, text, kernels):
     """Raise ValueError if a header contains more than the known macros and the prototypes of the C file."""
     # the C file includes the header, so another macro there could change the meaning of the C text
-    text = without_comments(text, f"{name}.h holds what C may read in several ways")
+    text = without_comments(text, f"{name}.h holds text that C compilers may read in different ways")
     lines = [line.strip() for line in text.split("\n") if line.strip()]
     refusal = f"{name}.h holds more than prototypes: expected the macros of symrot and a prototype of each function"
     top = HEADER_TOP.replace("@", name.upper()).split("\n")
@@ -1473,10 +1485,14 @@ def check_banner(data, text):
     title = banner.split("\n\n")[0]
     need(
         bare(title) == bare(f"{name}: {data['title']}"),
-        f"{name}.c: expected the banner to begin with the kernel and title of the certificate, got {quoted(title)}",
+        f"{name}.c: expected the comment at the top to begin with the kernel and title of the certificate, got "
+        f"{quoted(title)}",
     )
     command = bare(data["regenerate"])
-    need(command and command in bare(banner), f"{name}.c: expected the banner to name the command of the certificate")
+    need(
+        command and command in bare(banner),
+        f"{name}.c: expected the comment at the top to name the command in the certificate's 'regenerate'",
+    )
 
 
 def has_choices(data):

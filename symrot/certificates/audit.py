@@ -146,8 +146,8 @@ def _audited(path: Path, data: Data, symrot_statement: Callable[[Data], Data | N
     if statement is None:
         return [
             *findings,
-            f"symrot has no kernel {name}, so its formulas and laws were not compared with symrot's own; pass "
-            "the scene of a kernel by --scene",
+            f"symrot has no kernel {name}, so its formulas and laws were not compared with symrot's own; if it was "
+            "emitted from a scene, pass that scene with --scene",
         ]
     _compare(path, data, statement)
     return [

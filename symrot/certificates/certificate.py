@@ -47,7 +47,7 @@ Data = dict[str, Any]
 TRUSTED = {
     "formulas and laws": "`symrot audit`, which proves them exactly, or recheck.py, which evaluates them at random "
     "points",
-    "C text": "that the compiler gives C its meaning: real numbers are rounded as IEEE 754 says, to nearest",
+    "C text": "that the compiler implements C correctly: real numbers are rounded to nearest, as IEEE 754 says",
     "functions": "sin, cos, sqrt and others of <math.h> are, but for rounding, the functions of that name",
 }
 

@@ -252,7 +252,8 @@ class KernelCheck:
         require(
             # functions such as symrot_sin are accurate only for small angles: the C text must test the angle
             reader.limited_angles <= set(map(reader.read, tested)),
-            f"{self.name} calls a function of limited range for an angle that the C text does not test",
+            f"{self.name} calls a function that is accurate only for small angles, for an angle that the C text does "
+            "not test",
         )
         return computed
 
@@ -299,7 +300,7 @@ class KernelCheck:
         holds = far == " + ".join(f"symrot_far{self.end}({each})" for each in tested)
         require(
             holds and bits == {"double": "64", "float": "32"}[self.real],
-            f"expected symrot_far{self.end} of every angle, got {far!r}",
+            f"expected a sum of calls symrot_far{self.end}(angle), one for each angle, got {far!r}",
         )
         self.compare([first], batch, map(of_sample, self.outputs), tested)
         self.compare([again], batch, map(of_sample, self.outputs))
@@ -425,7 +426,7 @@ def prove(law, case, formulas):
                 reader.functions[node.func.id, *map(reader.value, node.args)] = reader.read(right)
     require(
         relations == [*map(reader.read, case["relations"])],
-        "expected the relations that follow from the steps of a proof, got others",
+        f"expected the relations in the proof of the law {law['law']!r} to be those that its steps state, got others",
     )
     reader.cases = {(reader.read(left), reader.read(right)): sign for left, sign, right in case["case"]}
     for name, text in formulas:
@@ -500,10 +501,10 @@ def check(path):
         for case in law["cases"]:
             prove(law, case, formulas)
     checked = " and ".join(readback)
-    laws = "1 law of the formulas holds" if len(data["laws"]) == 1 else f"{len(data['laws'])} laws of the formulas hold"
+    laws = "1 law is proven" if len(data["laws"]) == 1 else f"{len(data['laws'])} laws are proven"
     return (
         f"{name}: {len(files)} hashes agree; the C text of {checked}, and of their batch functions, computes the "
-        f"formulas; {laws}; the rounding bounds were not checked"
+        f"formulas; {laws} from the formulas; the rounding bounds were not checked"
     )
 
 

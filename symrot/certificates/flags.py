@@ -32,10 +32,10 @@ VECTORS = (
     "add -fno-tree-slp-vectorize, or compare the object code"
 )
 CONTRACTION = (
-    "contraction rounds a*b + c once: bits change, and the bounds hold where no product is fused in some places and "
-    "rounded in others, which the comparison of object code tells"
+    "contraction rounds a*b + c once, so the bits of results may change; the bounds hold if no product is fused in one "
+    "place and rounded in another: compare the object code to see it"
 )
-UNFIXED = "without it a compiler may contract a*b + c where the processor has it, and bits change"
+UNFIXED = "without it a compiler may round a*b + c once if the processor can, so the bits of results may change"
 
 
 # Contraction makes even the bounds void if a product is fused in some sums and rounded in others, so that its errors no
@@ -56,8 +56,8 @@ FAST = ("reassociation", "reciprocals", "finite numbers only", "unsigned zeros",
 VOID: dict[str, str] = {  # property that a flag switches on -> why it voids the certificate
     "reassociation": "sums and products are computed in another order: other roundings",
     "reciprocals": "x/y becomes x*(1/y): one rounding more",
-    "finite numbers only": "comparisons and ranges assume that there are no infinities and NaN",
-    "unsigned zeros": "the sign of a zero may change, which atan2, copysign and division see",
+    "finite numbers only": "comparisons and ranges assume that there are no infinities and no NaN",
+    "unsigned zeros": "the sign of a zero may change, which affects atan2, copysign and division",
     "approximate functions": "square roots and functions of libm may be replaced by less accurate ones",
     "flush to zero": "numbers below 2^-1022 (floats: 2^-126) become zero",
     "excess precision": "numbers are kept with more digits than their type and rounded twice (FLT_EVAL_METHOD != 0)",
@@ -65,17 +65,20 @@ VOID: dict[str, str] = {  # property that a flag switches on -> why it voids the
 }
 _WORDS = r"[\w.,+\-=/:@%]*"
 TABLE: tuple[FlagRule, ...] = (
-    FlagRule(r"-ffp-contract=off", "no contraction: required for the bits of the C text", clears=("contraction",)),
+    FlagRule(r"-ffp-contract=off", "no contraction: otherwise the bits of results may differ from those of the C text",
+             clears=("contraction",)),
     FlagRule(r"-ffp-contract=(fast|on|fast-honor-pragmas)", CONTRACTION, sets=("contraction",)),
     FlagRule(r"-ffast-math|-Ofast", "sums in another order, reciprocals, finite numbers only, unsigned zeros; "
-             "at linking it sets flush to zero for the whole process", sets=(*FAST, "flush to zero", "contraction")),
+             "when linking, it also sets flush to zero for the whole process",
+             sets=(*FAST, "flush to zero", "contraction")),
     FlagRule(r"-fno-fast-math", "takes -ffast-math back", clears=(*FAST, "flush to zero")),
-    FlagRule(r"-funsafe-math-optimizations", "sums in another order, reciprocals, unsigned zeros; at linking it sets "
-             "flush to zero", sets=("reassociation", "reciprocals", "unsigned zeros", "flush to zero")),
+    FlagRule(r"-funsafe-math-optimizations", "sums in another order, reciprocals, unsigned zeros; when linking, "
+             "it also sets flush to zero", sets=("reassociation", "reciprocals", "unsigned zeros", "flush to zero")),
     FlagRule(r"-fno-unsafe-math-optimizations", "takes -funsafe-math-optimizations back",
              clears=("reassociation", "reciprocals", "unsigned zeros", "flush to zero")),
     FlagRule(r"-fassociative-math", VOID["reassociation"], sets=("reassociation",)),
-    FlagRule(r"-fno-associative-math", "keeps the order of the C text", clears=("reassociation",)),
+    FlagRule(r"-fno-associative-math", "keeps the order of the sums and products in the C text",
+             clears=("reassociation",)),
     FlagRule(r"-freciprocal-math|-mrecip(=.*)?", VOID["reciprocals"], sets=("reciprocals",)),
     FlagRule(r"-fno-reciprocal-math|-mno-recip", "keeps divisions", clears=("reciprocals",)),
     FlagRule(r"-ffinite-math-only|-fno-honor-(nans|infinities)", VOID["finite numbers only"],
@@ -102,9 +105,9 @@ TABLE: tuple[FlagRule, ...] = (
     FlagRule(r"-ffp-exception-behavior=\w+|-f(no-)?trapping-math|-f(no-)?signaling-nans",
              "exceptions are not certified"),
     FlagRule(r"-f(no-)?math-errno", "errno is not certified; square roots are correctly rounded either way"),
-    FlagRule(r"-f(no-)?rounding-math", "rounding is to nearest, which the self-test at load checks"),
+    FlagRule(r"-f(no-)?rounding-math", "rounding is to nearest, as the self-test checks when the library is loaded"),
     FlagRule(r"-f(no-)?cx-(limited-range|fortran-rules)|-fcomplex-arithmetic=\w+", "kernels have no complex numbers"),
-    FlagRule(r"-O[0123sgz]?", "changes no value: the object code is compared where it can be"),
+    FlagRule(r"-O[0123sgz]?", "changes no value; `symrot certify --objects` compares the object code"),
     FlagRule(r"-mfma4?|-march=" + _WORDS, "the processor, which may have fused operations", sets=("fused operations",)),
     FlagRule(r"-mno-fma4?", "a processor without fused operations", clears=("fused operations",)),
     FlagRule(r"-f(tree-)?slp-vectorize", "vectors of single statements", clears=("no vectors",)),
@@ -115,17 +118,18 @@ TABLE: tuple[FlagRule, ...] = (
     FlagRule(r"-f(no-)?(tree-\w[\w-]*|vectorize|slp-vectorize|inline[\w-]*|unroll-\w+|peel-loops|ipa-[\w-]+|gcse[\w-]*|if-conversion2?"
              r"|schedule-insns2?|split-loops|loop-[\w-]+|reorder-[\w-]+|align-[\w-]+(=\d+)?|rename-registers|web|ivopts|early-inlining"
              r"|code-hoisting|expensive-optimizations|move-loop-invariants|vect-cost-model(=\w+)?|partial-inlining|section-anchors)",
-             "order and choice of instructions, no rounding"),
+             "order and choice of instructions; roundings stay the same"),
     FlagRule(r"-f(no-)?(PIC|pic|PIE|pie|plt|common|ident|builtin(-\w+)?|strict-aliasing|strict-overflow|wrapv|exceptions|rtti"
              r"|asynchronous-unwind-tables|unwind-tables|omit-frame-pointer|function-sections|data-sections|semantic-interposition"
              r"|short-enums|signed-char|unsigned-char|freestanding|hosted|openmp|openmp-simd|lto|fat-lto-objects|delete-null-pointer-checks"
              r"|stack-clash-protection|zero-initialized-in-bss|merge-constants|integrated-as|addrsig|color-diagnostics)"
              r"|-f(no-)?(stack-protector[\w-]*|stack-check|lto=\w+|cf-protection(=\w+)?|sanitize(-\w+)*=[\w,]+|visibility=\w+"
              r"|diagnostics-[\w=-]+|file-prefix-map=.*|debug-prefix-map=.*|profile-[\w=-]+|max-errors=\d+|hardened)",
-             "how code is laid out, checked and linked, no rounding"),
+             "how code is laid out, checked and linked; roundings stay the same"),
     FlagRule(r"-(std=(c|gnu|iso9899:|c\+\+|gnu\+\+)\w+|ansi|pedantic(-errors)?|pipe|pthread|c|S|s|static|shared|nostdlib|nodefaultlibs"
-             r"|g[\w+-]*(=\w+)?|v|w|rdynamic|no-pie|pie|P|MD|MMD|MP)", "language, debugging and linking, no rounding"),
-    FlagRule(r"-W(?![ap],).*", "warnings, and what is passed to the linker"),
+             r"|g[\w+-]*(=\w+)?|v|w|rdynamic|no-pie|pie|P|MD|MMD|MP)",
+             "language, debugging and linking; roundings stay the same"),
+    FlagRule(r"-W(?![ap],).*", "warnings, and options for the linker"),
     FlagRule(r"-(o|x|I|L|MF|MT|MQ|isystem|iquote|idirafter|Xlinker)", "names of files", takes_next=True),
     FlagRule(r"-(I|L|l|isystem|iquote).+|-x(c|c\+\+)", "names of files and libraries"),
     FlagRule(r"-[DU](NDEBUG|_(GNU|DEFAULT|POSIX_C|XOPEN|ISOC99|ISOC11|BSD|FORTIFY)_SOURCE|_REENTRANT|_GLIBCXX_\w+"
@@ -170,8 +174,8 @@ class FlagEffect:
     def sentence(self) -> str:
         """Return one line that says what still holds under the flags, with the reasons."""
         effect = {
-            BITS: "the bits of the C text and its error bounds hold",
-            BOUNDS: "the error bounds hold, not the bits",
+            BITS: "the results are those of the C text bit for bit, and its error bounds hold",
+            BOUNDS: "the error bounds hold, but the bits of results may differ from those of the C text",
             NOTHING: "the certificate is void",
         }[self.holds]
         why: dict[str, list[str]] = {}

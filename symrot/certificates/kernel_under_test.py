@@ -102,7 +102,7 @@ def _derivative_laws(equations: Equations, outputs: Sequence[str]) -> tuple[Law,
             symbols = {str(symbol): symbol for symbol in formula.free_symbols}
             slope = exact_derivative(formula, symbols[variable]) if variable in symbols else 0
             vanishing.append(constant(output) - slope)
-    return (Law("the derivatives are those of the rates", tuple(vanishing)),) if vanishing else ()
+    return (Law("each derivative is that of the formula of its rate", tuple(vanishing)),) if vanishing else ()
 
 
 class _ConstantsByName(dict[str, Symbol]):

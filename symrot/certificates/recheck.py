@@ -982,7 +982,7 @@ def check_shape(value, shape, place):
     else:
         need(isinstance(value, dict), f"{place}: expected an object, as the schema says, got {quoted(value)}")
         for key in value if str in shape else shape:
-            need(key in value, f"{place}: expected {key!r}, as the schema says, and it is missing")
+            need(key in value, f"{place}: expected {key!r}, as the schema says, but it is missing")
             check_shape(value[key], shape[str] if str in shape else shape[key], f"{place}.{quoted(key)[1:-1]}")
 
 
@@ -1020,12 +1020,12 @@ def certified(path):
     need(
         data["schema"] == "symrot.certificate/1",
         f"the schema is {quoted(data['schema'])}: expected symrot.certificate/1, the certificate of a kernel; "
-        "`symrot audit` checks those of steps",
+        "`symrot audit` checks the certificates of steps",
     )
     sealed = {key: value for key, value in data.items() if key != "seal"}
     text = json.dumps(sealed, sort_keys=True, separators=(",", ":"))
     seal = sha256(text.encode()).hexdigest() == data["seal"]
-    need(seal, "the text was changed after it was sealed: expected a valid seal")
+    need(seal, "the certificate was changed after it was sealed: expected 'seal' to be the SHA-256 of its other parts")
     name, files = data["kernel"], data["files"]
     right = re.fullmatch(r"[A-Za-z]\w*", name, re.ASCII) and path.name == f"{name}.cert.json"
     need(
@@ -1056,7 +1056,7 @@ def defined_functions(definitions):
     functions = {}
     for name, text in definitions:
         new = is_name(name) and name not in functions
-        need(new, f"{quoted(name)} is already in use: expected a name without a meaning for a function")
+        need(new, f"{quoted(name)} is already in use: expected a new name for a function")
         parameters = [letter for letter in "xyzw" if re.search(rf"\b{letter}\b", text)]
         need(parameters and parameters == [*"xyzw"][: len(parameters)], f"{name}: expected a function of x, or of x, y")
         reader = FormulaReader(text, f"function {name}", functions, ("pi", *parameters))
@@ -1155,7 +1155,11 @@ def check_law(law, specification, points):
             # An analytic expression that is not identically zero passes at a random point with negligible probability.
             # ``size`` is its value if all symbols are random and unrelated.
             small = min(max(abs(size) / 10**60, Decimal("1e-70")), Decimal("1e-40"))
-            need(abs(rest) <= small, f"{place} does not follow from formulas: expected 0 to 60 digits, got {rest:.3}")
+            need(
+                abs(rest) <= small,
+                f"{place} does not follow from the formulas: expected 0 at a random point, computed with 60 digits, "
+                f"got {rest:.3}",
+            )
 
 
 # --- series and constants ---------------------------------------------------------------------------------------------
@@ -1305,7 +1309,7 @@ def check_formulas(name, kernel, data, point):
         if kernel.shape == "spans":
             need(
                 not computed.keys() & outputs.keys(),
-                f"{name} does not compute its formulas: expected each output in one loop",
+                f"{name} does not compute its formulas: expected each output in one of the two loops only",
             )
             computed |= outputs
         else:
@@ -1349,7 +1353,7 @@ def point_of_box(data, specification, real):
     numbers = Decimals()
     names, inputs = Names(numbers), {}
     for place, symbol in specification.symbols.items():
-        need(place in bounds["box"], f"rounding.box: expected a range of {quoted(place)}, and it is missing")
+        need(place in bounds["box"], f"rounding.box: expected a range of {quoted(place)}, but it is missing")
         low, high = (hexadecimal(end, f"rounding.box.{place}") for end in bounds["box"][place])
         need(
             -math.inf < low <= high < math.inf,
@@ -1452,7 +1456,7 @@ HEADER_END = """#ifdef __cplusplus
 def check_header(name, text, kernels):
     """Raise ValueError if a header contains more than the known macros and the prototypes of the C file."""
     # the C file includes the header, so another macro there could change the meaning of the C text
-    text = without_comments(text, f"{name}.h holds what C may read in several ways")
+    text = without_comments(text, f"{name}.h holds text that C compilers may read in different ways")
     lines = [line.strip() for line in text.split("\n") if line.strip()]
     refusal = f"{name}.h holds more than prototypes: expected the macros of symrot and a prototype of each function"
     top = HEADER_TOP.replace("@", name.upper()).split("\n")
@@ -1486,10 +1490,14 @@ def check_banner(data, text):
     title = banner.split("\n\n")[0]
     need(
         bare(title) == bare(f"{name}: {data['title']}"),
-        f"{name}.c: expected the banner to begin with the kernel and title of the certificate, got {quoted(title)}",
+        f"{name}.c: expected the comment at the top to begin with the kernel and title of the certificate, got "
+        f"{quoted(title)}",
     )
     command = bare(data["regenerate"])
-    need(command and command in bare(banner), f"{name}.c: expected the banner to name the command of the certificate")
+    need(
+        command and command in bare(banner),
+        f"{name}.c: expected the comment at the top to name the command in the certificate's 'regenerate'",
+    )
 
 
 def has_choices(data):

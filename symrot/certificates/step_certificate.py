@@ -6,6 +6,7 @@ random points, exactly, as residues: integers modulo a prime. Functions such as 
 
 from collections.abc import Mapping, Sequence
 from dataclasses import dataclass, replace
+from decimal import Decimal
 from fractions import Fraction
 
 from symrot.build.code_digest import text_digest
@@ -54,7 +55,7 @@ SCHEMA = "symrot.step/2"
 TYPES = {"": "double", "f": "float"}
 TRUSTED = {
     "rates": "the formulas of the rates, which the certificate of the scene's own kernel proves",
-    "C text": "that the compiler gives C its meaning: real numbers are rounded as IEEE 754 says, to nearest",
+    "C text": "that the compiler implements C correctly: real numbers are rounded to nearest, as IEEE 754 says",
 }
 ELLIPTIC = {
     "formula": "that equations which hold at the states to 15 digits hold at others: nothing is proven between them",
@@ -65,7 +66,7 @@ ELLIPTIC_BOUNDS = {
     "text names), 2^-90 of its functions dd_rf, dd_agm and dd_exp, apart from the errors of their arguments",
     "exact values": "ranges of the elliptic functions, modulus, quarter periods and phases; the theta series",
 }
-ELLIPTIC_NOT_STATED = {"not stated": "errors of rounding, and of truncation below 15 digits"}
+ELLIPTIC_NOT_STATED = {"not stated": "errors of rounding, and errors of truncation that do not show in 15 digits"}
 WHOLE_STATE = {"rates": "the formulas of the rates, which symrot derives from Euler's equations for the whole state"}
 NOT_STATED = {"not stated": "errors of rounding and truncation"}
 EVALUATIONS = 32
@@ -233,8 +234,8 @@ def bounds_of_step(
         ranges[symbols[place]] = low, high
     errors = truncation_bounds(rates, _with_intended_constants(rates, method), ranges)
     return {
-        "meaning": "for each state after one step on the box: |computed - exact motion| <= rounding + truncation, from "
-        "the same floating-point start, size and parameters",
+        "meaning": "for each state after one step from inputs in the box: |computed - exact motion| <= rounding + "
+        "truncation, with the same floating-point initial state, step size and parameters",
         "truncation": {name: value.hex() for name, value in errors.items()},
         "rounding": rounding,
     }
@@ -255,10 +256,11 @@ def _require_intended(rates: Program) -> None:
         if own is not None and abs(own - node[1]) > DEFECT * abs(own):
             meant = intended_value(Fraction(float(node[1])), "binary64")
             number = f"{meant.fraction}*pi" if meant.times_pi else str(meant.fraction)
+            written = Decimal(node[1].numerator) / node[1].denominator
             raise InputError(
-                f"{rates.signature.name}: expected only constants whose double stands for no other number, because "
-                f"errors are bounded, got {float(node[1])!r}, whose double is that of {number}; write {number} or "
-                "fewer digits"
+                f"{rates.signature.name}: expected no constant that is a rounded value of another number, because "
+                f"errors are bounded, got {written}, which has the same double as {number}; write {number} or fewer "
+                "digits"
             )
 
 
@@ -356,8 +358,8 @@ def _require_arguments(file: str, source: str, name: str, signature: Signature, 
     for function, expected in ((name, one), (f"{name}_batch", batch)):
         if functions[function].parameters != tuple(expected):
             raise CertificateError(
-                f"{file}: expected {function} to have the arguments {', '.join(each.name for each in expected)}, of "
-                f"{real} and with the sizes of a step, got others"
+                f"{file}: expected {function} to have the arguments {', '.join(each.name for each in expected)} of "
+                f"type {real}, with the array sizes of a step, got others"
             )
 
 

@@ -188,7 +188,7 @@ def _kinetic_energy(name: str) -> Definition:
 
     def laws() -> tuple[Law, ...]:
         gradient = [(omega.dot(TENSOR * omega) / 2).diff(w) for w in omega]
-        return (Law("twice it is omega . L, with L its gradient",
+        return (Law("twice the energy is omega . L, where L is the gradient of the energy",
                     (2 * symbols.E - omega.dot(Matrix(gradient)),)),)  # fmt: skip
 
     return Definition(
@@ -203,7 +203,7 @@ def _momentum_body(name: str) -> Definition:
 
     def laws() -> tuple[Law, ...]:
         momentum = Matrix(_MOMENTUM_B)
-        return (Law("it is the inertia tensor times omega", tuple(momentum - TENSOR * omega)),)
+        return (Law("the momentum is the inertia tensor times omega", tuple(momentum - TENSOR * omega)),)
 
     return Definition(
         name, "angular momentum in body axes", (tensor_argument(), OMEGA),
@@ -220,7 +220,11 @@ def _momentum_space(name: str) -> Definition:
     def laws() -> tuple[Law, ...]:
         momentum = Matrix(_MOMENTUM_S)
         rotated = quaternion_to_dcm() * TENSOR * omega
-        return (Law("it is the dcm times the momentum in body axes", tuple(momentum - rotated), (unit_relation(),)),)
+        return (
+            Law(
+                "the momentum is the dcm times the momentum in body axes", tuple(momentum - rotated), (unit_relation(),)
+            ),
+        )
 
     return Definition(
         name, "angular momentum in space axes", (tensor_argument(), OMEGA, QUATERNION),

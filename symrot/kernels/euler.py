@@ -88,7 +88,7 @@ def _dcm(name: str, sequence: str) -> Definition:
     def laws() -> tuple[Law, ...]:
         entries = Matrix(3, 3, symbols.rotation_entries)
         return (
-            Law("it is the dcm of the product of the three turns as quaternions",
+            Law("the matrix is the dcm of the product of the three turns as quaternions",
                 tuple(entries - quaternion_to_dcm(quaternion_of_euler(sequence)))),
         )  # fmt: skip
 
@@ -122,7 +122,7 @@ def _rates(frame: str, name: str, sequence: str) -> Definition:
 
     def laws() -> tuple[Law, ...]:
         vanishing = Matrix(jacobian) * Matrix(symbols.angle_rates) - omega
-        return (Law("B dangles/dt is the given angular velocity", tuple(vanishing)),)
+        return (Law("B d(angles)/dt is the given angular velocity", tuple(vanishing)),)
 
     where = {"body": "body", "space": "space"}[frame]
     return Definition(
@@ -155,8 +155,8 @@ def _quaternion(name: str, sequence: str) -> Definition:
     named, formulas = _by_outer_products(quaternion_of_euler(sequence))
 
     def laws() -> tuple[Law, ...]:
-        return (Law("its dcm is that of the angles", tuple(quaternion_to_dcm() - dcm(sequence))),
-                Law("it is of unit norm", (unit_relation(),)))  # fmt: skip
+        return (Law("the dcm of the quaternion is that of the angles", tuple(quaternion_to_dcm() - dcm(sequence))),
+                Law("the quaternion has unit norm", (unit_relation(),)))  # fmt: skip
 
     return Definition(
         name, f"quaternion of Euler angles, {_called(sequence)}",

@@ -53,7 +53,10 @@ def _solid(name: str, shape: str) -> Definition:
         shifted = _tensor(ENTRIES) + symbols.m * (c.dot(c) * eye(3) - c * c.T)
         about_origin = body.inertia + symbols.m * (c.dot(c) * eye(3) - c * c.T)
         return (
-            Law("it is the integral over the body, about the origin of its shape", tuple(shifted - about_origin)),
+            Law(
+                "about the origin of the shape, the inertia tensor is the integral over the body",
+                tuple(shifted - about_origin),
+            ),
             Law("the centre of mass is the mean position", tuple(Matrix(symbols.position) - c)),
         )
 

@@ -116,7 +116,7 @@ def _components(kernel: Definition, name: str) -> tuple[tuple[str, str, str], ..
             if component[0] == name:
                 return (component,)
     known = ", ".join(dict.fromkeys(n for a in kernel.inputs for n in (a.name, *(c[0] for c in a.components))))
-    raise InputError(f"{kernel.name}: expected derivatives by its inputs ({known}), got {name!r}")
+    raise InputError(f"{kernel.name}: expected derivatives with respect to its inputs ({known}), got {name!r}")
 
 
 def _laws(kernel: Definition, chosen: dict[str, tuple[tuple[str, str, str], ...]]) -> tuple[Law, ...]:
@@ -135,7 +135,9 @@ def _laws(kernel: Definition, chosen: dict[str, tuple[tuple[str, str, str], ...]
             slopes = [_slope(part, symbols[variable], roots) for part in (above, below)]
             # for an output y = a/b: b y' = a' - y b', shorter than the derivative of the quotient
             vanishing.append(below * entry - slopes[0] + own * slopes[1])
-        laws.append(Law(f"the derivatives by {name} are those of the outputs", tuple(vanishing)))
+        laws.append(
+            Law(f"the derivatives with respect to {name} are those of the formulas of the outputs", tuple(vanishing))
+        )
     return tuple(laws)
 
 

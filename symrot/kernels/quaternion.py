@@ -77,8 +77,8 @@ def _dcm(name: str) -> Definition:
             *(quaternion_product(q, [0, *axis], conjugate(q))[1:, 0] for axis in Matrix.eye(3).tolist())
         )
         return (
-            Law("its columns are the turned axes q e q*", tuple(entries - turned), (unit_relation(),)),
-            Law("it is orthogonal", tuple(entries.T * entries - Matrix.eye(3)), (unit_relation(),)),
+            Law("the columns are the rotated axes q e q*", tuple(entries - turned), (unit_relation(),)),
+            Law("the matrix is orthogonal", tuple(entries.T * entries - Matrix.eye(3)), (unit_relation(),)),
         )
 
     return Definition(
@@ -100,7 +100,7 @@ def _of_dcm(name: str) -> Definition:
         q = symbols.quaternion
         return (
             Law(
-                "its dcm is the given one, of a rotation",
+                "the dcm of the quaternion is the given rotation matrix",
                 tuple(quaternion_to_dcm(q) - matrix),
                 rotation_relations(matrix),
             ),
@@ -165,7 +165,7 @@ def _product(name: str) -> Definition:
         matrices = (quaternion_to_dcm(each, "homogeneous") for each in (product, left, right))
         turned, first, second = matrices
         return (
-            Law("its dcm is the product of the dcms", tuple(turned - first * second)),
+            Law("the dcm of the product is the product of the dcms", tuple(turned - first * second)),
             Law("norms multiply", (norm_squared(product) - norm_squared(left) * norm_squared(right),)),
         )
 
@@ -185,7 +185,13 @@ def _rotate(towards: str, name: str) -> Definition:
     named, formulas = turned(symbols.quaternion if to_space else conjugate(symbols.quaternion), vector)
 
     def laws() -> tuple[Law, ...]:
-        return (Law("it is the dcm times the vector", tuple(Matrix(rotated) - matrix * vector), (unit_relation(),)),)
+        return (
+            Law(
+                "the rotated vector is the dcm times the vector",
+                tuple(Matrix(rotated) - matrix * vector),
+                (unit_relation(),),
+            ),
+        )
 
     return Definition(
         name, f"{there} components of a vector given in {here} axes, by a unit quaternion",

@@ -65,9 +65,9 @@ def _dcm(which: Projection, name: str) -> Definition:
     def laws() -> tuple[Law, ...]:
         entries = Matrix(3, 3, symbols.rotation_entries)
         return (
-            Law("it is the dcm of the quaternion of the parameters",
+            Law("the matrix is the dcm of the quaternion of the parameters",
                 tuple(entries - quaternion_to_dcm(which.homogeneous(), "normalised"))),
-            Law("it is orthogonal", tuple(entries.T * entries - Matrix.eye(3))),
+            Law("the matrix is orthogonal", tuple(entries.T * entries - Matrix.eye(3))),
         )  # fmt: skip
 
     return Definition(
@@ -80,7 +80,10 @@ def _dcm(which: Projection, name: str) -> Definition:
 def _quaternion(which: Projection, name: str) -> Definition:
     def laws() -> tuple[Law, ...]:
         back = which.of_quaternion(symbols.quaternion) - Matrix(which.parameters)
-        return (Law("it is of unit norm", (unit_relation(),)), Law("its parameters are the given ones", tuple(back)))
+        return (
+            Law("the quaternion has unit norm", (unit_relation(),)),
+            Law("the parameters of the quaternion are the given ones", tuple(back)),
+        )
 
     return Definition(
         name, f"quaternion of {_CALLED[which.name]}", (_input(which),),
@@ -98,7 +101,13 @@ def _of_quaternion(which: Projection, name: str) -> Definition:
         formulas = list(which.of_quaternion(symbols.quaternion))
 
     def laws() -> tuple[Law, ...]:
-        return (Law("its dcm is that of the quaternion", tuple(which.dcm() - quaternion_to_dcm()), (unit_relation(),)),)
+        return (
+            Law(
+                "the dcm of the parameters is that of the quaternion",
+                tuple(which.dcm() - quaternion_to_dcm()),
+                (unit_relation(),),
+            ),
+        )
 
     domain = "unit quaternions" + ("; the set of length at most 1" if which.centre else " but half turns, q0 = 0")
     box = QUATERNION_BOX if which.centre else QUATERNION_BOX | boxed((q0,), "1/10", 1)

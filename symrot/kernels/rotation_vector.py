@@ -41,8 +41,8 @@ def _quaternion(name: str) -> Definition:
     def laws() -> tuple[Law, ...]:
         derived = quaternion_of_rotation_vector(_VECTOR)
         quaternion = Matrix(symbols.quaternion)
-        return (Law("it is the quaternion derived from axis and angle", tuple(quaternion - derived)),
-                Law("its dcm is the exponential of skew(v)",
+        return (Law("the quaternion is the one derived from axis and angle", tuple(quaternion - derived)),
+                Law("the dcm of the quaternion is the exponential of skew(v)",
                     tuple(quaternion_to_dcm(quaternion) - dcm(_VECTOR))))  # fmt: skip
 
     formulas = [cos(half), *(sinc(half) / 2 * v for v in _VECTOR)]
@@ -62,7 +62,13 @@ def _of_quaternion(name: str) -> Definition:
 
     def laws() -> tuple[Law, ...]:
         norm = sum(q**2 for q in symbols.quaternion)
-        return (Law("its dcm is that of the quaternion", tuple(dcm(_VECTOR) - quaternion_to_dcm()), (norm - 1,)),)
+        return (
+            Law(
+                "the dcm of the rotation vector is that of the quaternion",
+                tuple(dcm(_VECTOR) - quaternion_to_dcm()),
+                (norm - 1,),
+            ),
+        )
 
     return Definition(
         name, "rotation vector of a quaternion (the logarithm), of length at most pi", (QUATERNION,),
@@ -74,7 +80,11 @@ def _of_quaternion(name: str) -> Definition:
 
 def _dcm(name: str) -> Definition:
     def laws() -> tuple[Law, ...]:
-        return (Law("it is the exponential of skew(v)", tuple(Matrix(3, 3, symbols.rotation_entries) - dcm(_VECTOR))),)
+        return (
+            Law(
+                "the matrix is the exponential of skew(v)", tuple(Matrix(3, 3, symbols.rotation_entries) - dcm(_VECTOR))
+            ),
+        )
 
     return Definition(
         name, "direction cosine matrix dcm_sb of a rotation vector (Rodrigues' formula), row by row", (_ARGUMENT,),
@@ -91,7 +101,7 @@ def _jacobian(frame: str, name: str) -> Definition:
     def laws() -> tuple[Law, ...]:
         derived = jacobian(frame, _VECTOR)
         return (
-            Law("it is the Jacobian of the exponential map", tuple(Matrix(3, 3, symbols.jacobian_entries) - derived)),
+            Law("B is the Jacobian of the exponential map", tuple(Matrix(3, 3, symbols.jacobian_entries) - derived)),
         )
 
     return Definition(

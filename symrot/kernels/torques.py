@@ -106,17 +106,21 @@ def _laws(kind: str, fields: tuple[str, ...], law: TorqueLaw) -> tuple[Law, ...]
     torque_b, omega = Matrix(symbols.torque_b), _MOTION.omega_b
     unit = (unit_relation(),)
     if kind == "rotor":
-        return (Law("it is minus omega x h", tuple(torque_b + omega.cross(law.momentum))),
-                Law("it does no work", (torque_b.dot(omega),)))  # fmt: skip
+        return (Law("the torque is minus omega x h", tuple(torque_b + omega.cross(law.momentum))),
+                Law("the torque does no work", (torque_b.dot(omega),)))  # fmt: skip
     if law.potential is not None:
-        return (Law("its work is what the potential loses, for every angular velocity",
+        return (Law("the work of the torque is what the potential loses, for every angular velocity",
                     tuple(torque_b - torque_of_potential(law)), unit),)  # fmt: skip
     if kind == "damping":
         return _damping_laws(torque_b, fields)
     matrix = quaternion_to_dcm() if kind == "constant_space" else eye(3)
     space_torque = field_value("torque", (FREE,) * 3)
     return (
-        Law("carried to the axes of the given torque it is that torque", tuple(matrix * torque_b - space_torque), unit),
+        Law(
+            "rotated into the axes of the given torque, the result is the given torque",
+            tuple(matrix * torque_b - space_torque),
+            unit,
+        ),
     )
 
 
@@ -127,6 +131,8 @@ def _damping_laws(torque_b: Matrix, fields: tuple[str, ...]) -> tuple[Law, ...]:
         return (Law("each component is minus its coefficient times omega", tuple(torque_b + drag)),)
     power = field_value("quadratic", FREE) * sqrt(omega.dot(omega)) ** 3
     return (
-        Law("it is along omega", tuple(torque_b.cross(omega))),
-        Law("its power is minus the coefficient times the cube of |omega|", (torque_b.dot(omega) + power,)),
+        Law("the torque is along omega", tuple(torque_b.cross(omega))),
+        Law(
+            "the power of the torque is minus the coefficient times the cube of |omega|", (torque_b.dot(omega) + power,)
+        ),
     )

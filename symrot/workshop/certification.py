@@ -284,7 +284,7 @@ def certify(
     --------
     >>> import symrot
     >>> symrot.certify("euler_zxz_body_rates", rounding=False).laws
-    ('B dangles/dt is the given angular velocity',)
+    ('B d(angles)/dt is the given angular velocity',)
     """
     folder = None if directory is None else Path(directory)
     if step is not None:

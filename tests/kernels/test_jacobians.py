@@ -107,7 +107,7 @@ def test_derivatives_are_finite_at_zero(name):
 def test_a_certificate_proves_the_derivatives(name, tmp_path):
     """The C text is proven equal to the derivatives, and the audit accepts the certificate."""
     data, _ = certify(name, directory=tmp_path)
-    assert any(law["law"].startswith("the derivatives by") for law in data["laws"])
+    assert any(law["law"].startswith("the derivatives with respect to") for law in data["laws"])
     for folder, suffix in (("numpy", ".py"), ("js", ".js")):
         (tmp_path.parent / folder).mkdir(exist_ok=True)
         text = kernel_text(name).source(folder)
@@ -143,7 +143,7 @@ def test_divisors_of_values_and_derivatives_are_shared():
 @pytest.mark.parametrize(
     ("kernel", "variables", "words"),
     [
-        ("quaternion_dcm", ["omega"], "derivatives by its inputs (q, q0, q1, q2, q3), got 'omega'"),
+        ("quaternion_dcm", ["omega"], "derivatives with respect to its inputs (q, q0, q1, q2, q3), got 'omega'"),
         ("quaternion_dcm", ["q", "q1"], "each input once"),
         ("quaternion_dcm", ["q", "q"], "each input once"),
         ("rotation_vector_of_quaternion", ["q"], "arc_ratio"),
@@ -214,5 +214,5 @@ def test_derivatives_of_rates_by_constants_are_exact_differences(scene, constant
 def test_a_scene_with_derivatives_is_certified():
     """The certificate of a scene states the law that its derivatives are those of the rates."""
     certificate = json.loads(symrot.emit("heavy_top_loops", jacobian=["y", "weight"]).certificate)
-    assert certificate["laws"][-1]["law"] == "the derivatives are those of the rates"
+    assert certificate["laws"][-1]["law"] == "each derivative is that of the formula of its rate"
     assert certificate["kernel"] == "heavy_top_loops_rates_by_y_by_weight"

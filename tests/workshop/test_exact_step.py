@@ -327,9 +327,7 @@ def test_the_certificate_proves_that_the_step_is_the_motion(content, axis):
     data = json.loads(step_text(scene_of(content), "exact").certificate())
     assert data["step"] == {"method": "exact", "axis": axis}
     proofs = [function["motion"] for function in data["formula"].values()]
-    assert len(proofs) == 2 and all(
-        "the derivative by dt" in p["law"] or "its derivative by dt" in p["law"] for p in proofs
-    )
+    assert len(proofs) == 2 and all("the derivative of the new state with respect to dt" in p["law"] for p in proofs)
     assert all(int(p["wrong_with_probability_below"].removeprefix("2^-")) > 400 for p in proofs)
 
 
@@ -418,7 +416,7 @@ def _less_trust(data):
 
 @pytest.mark.parametrize(("change", "message"), [
     (_half_rounding, "expected"), (_less_truncation, "expected the bounds that symrot computes"),
-    (_faster_rates, "expected next|its rate"), (_coupled_rates, "omega_3 by dt to be its rate"),
+    (_faster_rates, "expected next|its rate"), (_coupled_rates, "omega_3 with respect to dt to be its rate"),
     (_other_states, "in the form|exact step, got those of omega_4|as symrot prints"),
     (_other_axis, "got another formula"), (_no_axis, "symmetry axis"),
     (_other_chance, "to be the proof"), (_less_trust, "the section 'trusted'"),
@@ -444,7 +442,7 @@ def test_a_wrong_closed_form_is_refused(monkeypatch):
         return original(self, rates, values, -dt, functions, number)
 
     monkeypatch.setattr(SteadyRotations, "after", backward)
-    with pytest.raises(CertificateError, match="by dt to be its rate"):
+    with pytest.raises(CertificateError, match="with respect to dt to be its rate"):
         step_text(scene_of(SYMMETRIC), "exact").certificate()
 
 
@@ -453,7 +451,7 @@ def test_a_closed_form_of_other_rates_is_refused():
     text = step_text(scene_of(SPHERE), "exact")
     (first, _), *others = text._rates_program.outputs
     damped = replace(text._rates_program, outputs=((first, parse("-omega_1")), *others))
-    with pytest.raises(CertificateError, match="the derivative of omega_1 by dt to be its rate"):
+    with pytest.raises(CertificateError, match="the derivative of omega_1 with respect to dt to be its rate"):
         formula_section(text.name, damped, text.method, text.c()[0])
 
 
@@ -469,7 +467,7 @@ def test_a_value_at_a_single_point_is_no_way_around_the_proof(scene, step, edits
     for old, new in edits.items():
         assert old in double
         double = double.replace(old, new.replace("3", "3.0").replace("7", "7.0"))
-    with pytest.raises(CertificateError, match="expected no choice"):
+    with pytest.raises(CertificateError, match="expected no conditional expression"):
         formula_section(text.name, text._rates_program, text.method, f"{double}{head}{single}")
 
 

@@ -342,7 +342,7 @@ def _bounds(
         scale, part = parts.pop()
         count += 1
         if count > MOST_PARTS:
-            raise InputError(f"{MIDDLE}, got one with such states; the step taylor of order 16 has bounds there")
+            raise InputError(f"{MIDDLE}, got ranges with such rotations; take --step taylor --order 16 for them")
         context.scale = scale
         try:
             context.prepare(list(moments), [point(a) if a == b else Bounded(a, b, 0.0, 0.0) for a, b in part])
@@ -357,5 +357,8 @@ def _bounds(
         except UndecidedError:
             parts += [(scale, half) for half in halves(part)]
     if not all(x < inf for x in rounding):
-        raise InputError("expected a smaller box, on which the errors of the step have bounds, got one without bounds")
+        raise InputError(
+            "expected narrower ranges of omega and dt, in which the errors of the step have bounds, got ranges without "
+            "bounds"
+        )
     return tuple(rounding), tuple(truncation)

@@ -15,8 +15,8 @@ __all__ = ["MIDDLE", "TINY", "Box", "Part", "halves", "power_near", "shells", "s
 TINY = 1e-100  # smaller components of omega, relative to the largest, are not covered; the C text takes some as zero
 LEAST_POWER, LARGEST_POWER = -1000, 1000  # of the scale of omega in the C text
 MIDDLE = (
-    "expected a box of omega away from the rotation about the middle axis, where the modulus of the elliptic functions "
-    "is below 0.7"
+    "expected ranges of omega without rotations near the middle axis, so that the modulus of the elliptic functions is "
+    "below 0.7"
 )
 
 Box = Mapping[str, tuple[Fraction, Fraction]]  # name of an input, such as "omega_1" or "dt" -> least and largest value
@@ -39,7 +39,7 @@ def signed_parts(box: Box) -> Iterator[Part]:
         if not parts:
             raise InputError(
                 f"expected a range of omega_{i} with numbers that are 0 or at least {TINY:g} of the largest |omega| in "
-                f"the box, got {low:g} to {high:g}"
+                f"the given ranges, got {low:g} to {high:g}"
             )
         choices.append(parts)
     yield from product(*choices)
@@ -58,7 +58,7 @@ def shells(part: Part) -> Iterator[tuple[float, Part]]:
         return
     first, last = frexp(smallest)[1] if smallest else -1100, frexp(largest)[1]
     if last - first > 8:
-        raise InputError(f"{MIDDLE}, got one that contains omega = 0, or nearly")
+        raise InputError(f"{MIDDLE}, got ranges that reach omega = 0, or come close to it")
     for exponent in range(first, last + 1):
         most = ldexp(1.0, exponent) if exponent < 1024 else inf
         clipped = tuple((max(low, -most), min(high, most)) for low, high in part)

@@ -29,7 +29,10 @@ LIMIT = Decimal(10) ** -DIGITS
 PRECISION = 60  # digits of the numbers
 STATES = 12
 """Number of states at which the equations are checked: three with any omega, nine with omega near a body axis."""
-LAW = "for dt = 0 the step is the identity, and its derivative by dt is the rates at its result"
+LAW = (
+    "for dt = 0 the state is unchanged, and the derivative of the new state with respect to dt is the rates at the "
+    "new state"
+)
 _TERMS = 60  # of the series of a sine or cosine of at most pi/4
 
 _State = tuple[list[Decimal], Decimal]
@@ -266,7 +269,7 @@ def _violation(
         worst = max(worst, off := abs(end.slope - rate) / (scale * scale if symbol.startswith("omega") else scale))
         if not off < LIMIT:  # a number that is not finite is below no limit
             raise CertificateError(
-                f"{name}: expected the derivative of {symbol} by dt to be its rate {float(rate):.9g}, "
-                f"got {float(end.slope):.9g}"
+                f"{name}: expected the derivative of {symbol} with respect to dt to be its rate "
+                f"{float(rate):.9g}, got {float(end.slope):.9g}"
             )
     return worst

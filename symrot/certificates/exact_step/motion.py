@@ -19,7 +19,10 @@ from symrot.formula.program import Program
 
 __all__ = ["motion_section", "require_limits"]
 
-LAW = "for dt = 0 the step is the identity, and its derivative by dt is the rates at its result"
+LAW = (
+    "for dt = 0 the state is unchanged, and the derivative of the new state with respect to dt is the rates at the "
+    "new state"
+)
 # a point with the roots that it needs, of a formula with one root: at most 8 degree/PRIME
 FACTOR = 8
 
@@ -41,7 +44,9 @@ def require_limits(file: str, operations: Operations) -> None:
         limits = relation == "==" and nodes[zero] == ("const", Fraction(0)) and nodes[limit] == ("const", Fraction(1))
         sine = nodes[nodes[quotient][1]] if limits and nodes[quotient][0] == "div" else None
         if sine != ("call", "sin", (x,)) or nodes[quotient][2] != x:
-            raise CertificateError(f"{file}: expected no choice in a step except x == 0 ? 1 : sin(x)/x, got another")
+            raise CertificateError(
+                f"{file}: expected no conditional expression in a step except x == 0 ? 1 : sin(x)/x, got another"
+            )
 
 
 def motion_section(file: str, rates: Program, places: Mapping[str, str], operations: Operations) -> dict[str, Any]:
@@ -106,7 +111,7 @@ def _compared(
         change, rate = Residue.of(result.slopes.get(SIZE, 0)), Residue.of(slope)
         if change.value != rate.value:
             raise CertificateError(
-                f"{file}: expected the derivative of {name} by dt to be its rate, got another formula"
+                f"{file}: expected the derivative of {name} with respect to dt to be its rate, got another formula"
             )
         degree = max(degree, change.degree + rate.degree)
     return degree
@@ -129,7 +134,7 @@ def _step(operations: Operations, places: Mapping[str, str], values: Mapping[str
             return results
     except (AttributeError, TypeError):  # of an operation with None
         pass
-    raise CertificateError(f"{operations.name}: expected a step of size 0 without a division by 0, got one")
+    raise CertificateError(f"{operations.name}: expected a step that is defined for dt = 0, but it divides by 0")
 
 
 def _root(x: Any) -> Residue:

@@ -153,7 +153,7 @@ def _shift_bytes(left: bool) -> Shuffle:
 def _constant(state: MachineState, word: int) -> int:
     value = state.context.terms.constant(word)
     if value is None:
-        raise NotUnderstood("expected a shuffle by constant word numbers, got variable word numbers")
+        raise NotUnderstood("expected a shuffle with constant indices of words, got variable indices")
     return value
 
 

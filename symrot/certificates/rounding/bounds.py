@@ -145,11 +145,11 @@ def _check_box(operations: Operations, box: Box) -> None:
     unknown = sorted(set(box) - set(operations.inputs))
     if unknown:
         raise InputError(
-            f"{operations.name}: expected a box of {', '.join(operations.inputs)}, got a range of {unknown[0]}"
+            f"{operations.name}: expected ranges of {', '.join(operations.inputs)} only, got a range of {unknown[0]}"
         )
     for place in operations.inputs:
         if place not in box:
-            raise InputError(f"{operations.name}: expected a range of {place} in the box, but it is missing")
+            raise InputError(f"{operations.name}: expected a range of every input, but that of {place} is missing")
         low, high = box[place]
         if not all((isinstance(x, Fraction) or isfinite(x)) and abs(Fraction(x)) <= LARGEST for x in (low, high)):
             raise InputError(f"{operations.name}: expected a finite range of {place}, got {show(low)} to {show(high)}")

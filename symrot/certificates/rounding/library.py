@@ -165,7 +165,8 @@ def largest_box(
     low, high = 0.0, 1.0
     if not holds(low):
         raise InputError(
-            f"{operations.name}: expected a target error of at least the error in the middle of the box, got {target:g}"
+            f"{operations.name}: expected a target error of at least the error at the midpoints of the ranges, got "
+            f"{target:g}"
         )
     while holds(high):
         low, high = high, 2 * high

@@ -34,7 +34,7 @@ __all__ = ["box_of", "check_bounds", "check_section", "region_of", "rounding_sec
 
 MEANING = (
     "absolute error of the computed output against the exact formula at the same floating-point inputs; "
-    "choices are followed as computed"
+    "a conditional takes the branch that its computed condition selects"
 )
 
 
@@ -221,7 +221,8 @@ def check_bounds(
     box, region = box_of(section), region_of(section)
     if not 0 <= section["budget"] <= BUDGET:
         raise CertificateError(
-            f"expected a search for bounds with at most {BUDGET} evaluations of boxes, got {section['budget']}"
+            f"expected a 'budget' of 0 to {BUDGET}, the number of parts of the ranges of inputs in which errors are "
+            f"bounded, got {section['budget']}"
         )
     for operations, part in zip((operations_double, operations_float), section["precisions"], strict=False):
         if operations is None:
@@ -279,7 +280,7 @@ def _check_precision(
             )
         if at.size and not ((task.box[0] <= at) & (at <= task.box[1])).all():
             raise CertificateError(
-                f"{name}: expected a point inside the box as the worst point of {item['output']}, got a point outside"
+                f"{name}: expected a point in the ranges of inputs as the worst point of {item['output']}, got another"
             )
         least = error_at_point(task, at)
         # a bound below the error at its stored point is refuted

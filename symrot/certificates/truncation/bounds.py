@@ -125,8 +125,9 @@ def _require_polynomial(rates: Program) -> None:
     # only then can the effect of a method's rounded coefficients be bounded
     if not is_polynomial(rates) or any("t" in names(node) for _, node in (*rates.temporaries, *rates.outputs)):
         raise InputError(
-            f"{rates.signature.name}: expected rates that are polynomials in the states, without the time, for the "
-            "truncation error of a step with rounded coefficients; take the step rk4 or taylor"
+            f"{rates.signature.name}: expected rates that are polynomials in the states, without the time: for other "
+            "rates symrot cannot bound the truncation error of a step whose coefficients are rounded; take the step "
+            "rk4 or taylor"
         )
 
 

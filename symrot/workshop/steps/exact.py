@@ -36,9 +36,10 @@ SPARE = 1 + 2e-6  # by which bounds are stated larger than computed, since sine 
 BOXED = ("omega_1", "omega_2", "omega_3", "dt")
 METHOD = "closed form of the motion, elliptic functions"
 MEANING = (
-    "for each state after one step on the box: |computed - exact motion| <= rounding + truncation, from the same "
-    "floating-point start, size and parameters, for the function of doubles; the exact motion starts with the "
-    f"quaternion divided by its norm, and components of omega are 0 or at least {TINY:g} of the largest on the box"
+    "for each state after one step from inputs in the box: |computed - exact motion| <= rounding + truncation, with "
+    "the same floating-point initial state, step size and parameters, for the function of doubles; the exact motion "
+    f"starts with the quaternion divided by its norm, and components of omega are 0 or at least {TINY:g} of the "
+    "largest in the box"
 )
 SHARES = (Fraction(1, 16), Fraction(-3, 2), Fraction(5))  # sizes of the test vectors, in units of 1/|omega|
 Motions = Callable[[Sequence[Fraction], Sequence[Fraction]], Any]
