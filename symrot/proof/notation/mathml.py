@@ -239,6 +239,7 @@ def _letter(letter: str, variant: str) -> str:
         return letter
     if variant == "script":
         special = {"B": "ℬ", "E": "ℰ", "F": "ℱ", "H": "ℋ", "I": "ℐ", "L": "ℒ", "M": "ℳ", "R": "ℛ"}
+        special |= {"e": "ℯ", "g": "ℊ", "o": "ℴ", **{digit: digit for digit in digits}}  # there are no script digits
         return special.get(letter) or chr((0x1D49C if letter.isupper() else 0x1D4B6) + ord(letter.upper()) - ord("A"))
     starts = {"bold": (0x1D400, 0x1D41A, 0x1D7CE), "sans-serif": (0x1D5A0, 0x1D5BA, 0x1D7E2)}.get(variant)
     if starts is None:
