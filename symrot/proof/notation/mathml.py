@@ -130,7 +130,7 @@ class _Translation:
     def item(self, node: Node, after_operand: bool = False) -> Item:
         """Return one node of parsed LaTeX as an :class:`Item`, with its MathML, width and kind.
 
-        With ``after_operand``, a minus sign is binary, not a prefix.
+        With ``after_operand``, a sign such as - is binary, not a prefix.
         """
         if not isinstance(node, Token):
             return self.scripted(node, after_operand) if isinstance(node, Scripts) else ITEMS[type(node)](self, node)
@@ -138,7 +138,7 @@ class _Translation:
         if node.kind == "sized" and text in FENCES:
             return Item(f'<mo stretchy="true" minsize="1.6em">{FENCES[text]}</mo>', 0.5)
         sign = SIGNS.get(text)
-        if sign and not after_operand:  # an operand is to the left of a binary sign
+        if sign and not after_operand:
             return Item(f'<mo form="prefix">{sign}</mo>', 0.7)
         if text in TOKENS:
             return TOKENS[text]
