@@ -127,11 +127,13 @@ class Share:
     @staticmethod
     def _swap_sum(node: tuple[Any, ...], pair: tuple[Any, ...], new: int) -> tuple[Any, ...]:
         (a, _), (b, relative) = pair[1]
-        signs = dict(node[1])
-        if a not in signs or b not in signs or signs[a] * signs[b] != relative:
-            return node
-        rest = (item for item in node[1] if item[0] not in (a, b))
-        return "add", tuple(sorted((*rest, (new, signs[a]))))
+        for sign in (1, -1):
+            # a sum may contain a node repeatedly, as in p + p + c: only one term for each of a and b is replaced
+            rest = Counter(node[1])
+            rest.subtract([(a, sign), (b, sign * relative)])
+            if min(rest.values()) >= 0:
+                return "add", tuple(sorted((*rest.elements(), (new, sign))))
+        return node
 
 
 def _without(part: tuple[int, ...], item: int) -> tuple[int, ...]:
