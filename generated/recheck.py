@@ -571,11 +571,11 @@ class FormulaReader(Reader):
 
 
 def constant(text, place):
-    """Return the number for which a text without variables stands, as a fraction: ``"1/3"`` or ``"pi/3"``.
+    """Return the number for which a text without variables stands, such as ``"1/3"`` or ``"pi/3"``, as a Fraction.
 
-    ``place`` names the text in error messages.
+    Pi is a rational approximation. ``place`` names the text in error messages.
     """
-    # PI is a fraction with more digits than any number in the C text
+    # PI has more digits than any number in the C text
     return FormulaReader(text, place, {}, ("pi",), is_constant=True).whole().value(AnyFunctions(), {"pi": PI})
 
 
@@ -936,7 +936,10 @@ class CReader(Reader):
 
 
 def run(body, numbers, inputs):
-    """Run a C ``body`` on ``inputs`` in the arithmetic ``numbers``; return outputs, and angles whose range it tests."""
+    """Run a C ``body`` on ``inputs`` in the arithmetic ``numbers``.
+
+    Return a map from each output to its value, and the set of the values of those angles whose size the body tests.
+    """
     names, outputs = dict(inputs), {}
     for target, expression in body.statements:
         value = expression.value(numbers, names)
@@ -1107,9 +1110,11 @@ class Specification:
 
 
 def draw_hypothesis(members, names):
-    """Define random values for the symbols ``members``, so that they form a rotation matrix or a unit vector."""
+    """Assign random values in ``names`` to the symbols ``members``: the entries of a rotation matrix or unit vector.
+
+    Nine symbols get the entries of a matrix, row by row; fewer get the components of a vector.
+    """
     # 2*v*v^T + 2*q0*[v]x + (2*q0^2 - 1)*1 for the unit quaternion (q0, v)
-    # nine symbols are a matrix, row by row
     vector = [names.numbers.draw() for _ in range(4 if len(members) == 9 else len(members))]
     length = Decimal.sqrt(sum(each * each for each in vector))
     vector = [each / length for each in vector]

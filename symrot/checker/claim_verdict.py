@@ -50,7 +50,9 @@ Limit = OutOfOperations | TimeUp
 MOST_SECONDS = 60
 """The limit on the processor time for one claim, in seconds. It is a last resort: MOST_OPERATIONS, the limit that
 normally ends a check, take some ten seconds; but operations inside SymPy are not counted."""
-FOR_ALL_VALUES = "== claims that both sides are equal for all values; as a relation between its letters, write one ="
+FOR_ALL_VALUES = (
+    "== claims that both sides are equal for all values; to state a relation between the letters, write one ="
+)
 WITH_HYPOTHESES = "symrot derives no such formula; but the hypotheses are not used, and the claim may be true with them"
 
 
@@ -150,10 +152,10 @@ def ended_note(limit: Limit) -> str:
 
 def unfinished(limit: Limit) -> Decision:
     """Return the decision "undecided" for a claim that needs more operations or processor time than its budget has."""
-    advice = "a letter in place of an inner function may help"
+    advice = "replacing an inner function by a letter may help"
     if isinstance(limit, OutOfOperations):
         return Decision("undecided", reason=f"it needs more than {_operations()}; {advice}")
-    reason = f"SymPy needs more than {MOST_SECONDS} s of processor time; a faster machine may decide it, and {advice}"
+    reason = f"SymPy needs more than {MOST_SECONDS} s of processor time; {advice}, or a faster machine"
     return Decision("undecided", reason=reason)
 
 

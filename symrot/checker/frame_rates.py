@@ -150,7 +150,7 @@ def verdict_on_rates(source: str) -> Verdict | None:
         notes += (f"{angular} is the angular velocity of {words[moving]} relative to {words[still]}",)
         return replace(first, notes=notes)
     condition = f"{angular} is the angular velocity of {words[still]} relative to {words[moving]}"
-    usual = f"usually {angular} is that of {words[moving]}, and the cross product has the other sign"
+    usual = f"usually {angular} is the angular velocity of {words[moving]}, and the cross product has the other sign"
     return replace(second, verdict="conditional", requires=(condition,), conditions=(condition,), notes=(*notes, usual))
 
 
@@ -195,7 +195,7 @@ def without_marks(source: str) -> tuple[str, str]:
     for rate in reversed(marked):
         plain = rf"\frac{{d{rate.vector}}}{{dt}}" if is_latex(source) else f"d{rate.vector}/dt"
         whole = f"{whole[: rate.start]}{plain} {whole[rate.end :]}"
-    return whole, f"the mark {marked[0].frame} of the frame at a derivative is left out"
+    return whole, f"the label {marked[0].frame} for the frame of a derivative is ignored"
 
 
 def _rates_in(source: str) -> Iterator[_Rate]:

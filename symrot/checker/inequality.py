@@ -39,9 +39,7 @@ MOMENTS = (("A", "B", "C"), *((f"{letter}{index.format(1)}", f"{letter}{index.fo
            for letter in "IJ" for mark in ("_", "") for n in (1, 2)))  # fmt: skip
 """Triples of names for the moments of inertia about three perpendicular axes, such as ("A", "B", "C")."""
 
-CONDITION = (
-    "it is a condition on its letters, which may hold for some of their values only: it is neither proven nor refuted"
-)
+CONDITION = "it is a condition that may hold for some values of its letters only: it is neither proven nor refuted"
 
 SPIN = "omega_3"
 """Name that symrot's known formulas have for the spin of a top about its axis of symmetry."""
@@ -84,7 +82,7 @@ def _verdict(claim: Claim, sign: str, flipped: str, start: float) -> Verdict:
     domain = decide_equation(replace(equation, right=equation.left))
     if domain.verdict not in ("true", "conditional"):
         return Verdict(
-            "undecided", reason="it is not known for which values of its letters both sides are real numbers"
+            "undecided", reason="it is not known for which values of the letters both sides are real numbers"
         )
     if is_proven_positive(difference) if strict else is_proven_nonnegative(difference):
         decision = for_positive_bases(replace(domain, verdict="true"), equation)

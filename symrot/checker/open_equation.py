@@ -39,8 +39,8 @@ def as_equation(claim: Claim, verdict: Verdict, notation: Notation) -> Verdict:
     # an equation of two letters, a = b
     if all(map(is_name_or_rate, (left, right))) and left != right:
         both = " and ".join(notation.formula(side) for side in (left, right))
-        reason = f"nothing here says what {both} are: it may be a condition, or they are two names for one quantity"
-        return _open(verdict, reason)
+        meanings = "the equation may be a condition, or both may be names for one quantity"
+        return _open(verdict, f"nothing here says what {both} are: {meanings}")
     names = [node for side in (left, right) for _, node in walk(side) if is_name_or_rate(node) and node.value != "pi"]
     if len({*names}) != 1 or len({str(name.value) for name in names}) != 1:
         return verdict
@@ -51,7 +51,7 @@ def as_equation(claim: Claim, verdict: Verdict, notation: Notation) -> Verdict:
     name = notation.formula(letter)
     example = ", for example" if _may_have_others(claim, letter) else ""
     written = notation.condition(values) if "==" in values else values
-    reason = f"it is an equation for {name}, and no identity: it holds for {written}{example}"
+    reason = f"it is an equation for {name}, not an identity: it holds for {written}{example}"
     return _open(verdict, reason)
 
 

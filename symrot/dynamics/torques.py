@@ -103,7 +103,7 @@ def _gravity_gradient(motion: Motion, mean_motion: Expr) -> TorqueLaw:
     return TorqueLaw(
         3 * mean_motion**2 * collected_cross(named, motion.inertia * named, named),
         potential=3 * mean_motion**2 * radius_b.dot(motion.inertia * radius_b) / 2,
-        keeps="the tide has a potential",
+        keeps="the gravity gradient has a potential",
         definitions=tuple(zip(named, radius_b, strict=True)),
     )
 

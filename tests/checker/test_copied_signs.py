@@ -30,7 +30,7 @@ def test_a_wrong_digit_is_repaired(text, right):
 
 @pytest.mark.parametrize("text", ["x ≈ sin y", "pi ≈ 22/7"])
 def test_an_approximation_without_digits_is_refused(text):
-    with pytest.raises(InputError, match="write = with the digits that you know"):
+    with pytest.raises(InputError, match="write = and the value to as many digits as you know"):
         symrot.check(text)
 
 

@@ -276,7 +276,7 @@ def test_a_root_of_a_quotient_of_two_negative_numbers_is_real(claim):
 )
 def test_the_core_refuses_a_root_that_is_no_real_number(formula):
     for read in (normal_form, is_zero):
-        with pytest.raises(InputError, match="no real number"):
+        with pytest.raises(InputError, match="is not a real number"):
             read(formula)
 
 

@@ -11,7 +11,7 @@ import symrot
 def test_an_equation_solved_by_an_inverse_matrix_is_multiplied_by_the_matrix(text, verdict):
     result = symrot.check(text)
     assert result.verdict == verdict
-    assert "the equation is decided after multiplying both sides by J" in result.notes
+    assert "both sides of the equation are multiplied by J before they are compared" in result.notes
     assert all(symrot.check(repair.text, repair=False).verdict == "recognised" for repair in result.repairs)
 
 

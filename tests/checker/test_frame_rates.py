@@ -40,4 +40,4 @@ def test_another_factor_or_a_marked_direction_that_does_not_fit_is_false(text):
 def test_one_rate_with_the_mark_of_a_frame_is_read_without_it():
     verdict = symrot.check("(dL/dt)_s = τ")
     assert verdict.verdict == "recognised"
-    assert "the mark s of the frame at a derivative is left out" in verdict.notes
+    assert "the label s for the frame of a derivative is ignored" in verdict.notes

@@ -108,6 +108,14 @@ def test_a_temperature_in_degrees_is_refused():
         symrot.check("20°C = 293.15 K")
 
 
+@pytest.mark.parametrize("claim", ["2π/60 s = 0.105 rad/s", "10 J/2 N = 5 J N"])
+def test_a_note_tells_how_a_unit_after_a_quotient_is_read(claim):
+    verdict = symrot.check(claim)
+    assert verdict.verdict == "true"
+    words = "read with a quotient such as 1/2 s as 1/(2 s), and one such as 6 m/2 s as (6 m/2) s"
+    assert verdict.notes[-1] == words
+
+
 def test_a_name_may_have_a_value_with_units():
     assert symrot.check("I = 2 kg m^2").verdict == "definition"
     assert symrot.check("I = 2 kg m").diagnosis.code == "dimension"

@@ -69,6 +69,20 @@ def test_a_right_formula_is_recognised_in_its_usual_reading_first(claim, name):
     assert not verdict.repairs and verdict.diagnosis.code == "none" and verdict.counterexample is None
 
 
+def test_a_negative_root_is_recognised_only_for_a_quantity_with_a_sign():
+    assert symrot.check("omega = -sqrt(omega_0^2 + 2*alpha*theta)").verdict == "recognised"
+    assert symrot.check("q0 = -sqrt(1 + R_11 + R_22 + R_33)/2").verdict == "recognised"
+    for positive in ("k = sqrt((a^2 + b^2)/12)", "T = 2*pi*sqrt(L/g)"):
+        verdict = symrot.check(positive.replace("= ", "= -"))
+        assert verdict.verdict in ("doubtful", "definition")
+        assert symrot.check(positive).verdict == "recognised"
+
+
+def test_a_sine_or_cosine_of_zero_is_read():
+    assert symrot.check("I_zz = m*a^2*cos(0)*cos(b)").verdict == "definition"
+    assert symrot.check("T = m*v^2/2*cos(x - x)*sin(b)").verdict == "definition"
+
+
 WRONG = (
     (r"\omega_x = \dot\phi \sin\theta \sin\psi - \dot\theta \cos\psi", "sign_of_term",
      "first component of the angular velocity of ZXZ in the body frame"),
@@ -212,7 +226,7 @@ def test_lines_for_the_components_of_one_quantity_belong_together():
     assert symrot.check(body + "φ̇ cos θ + ψ̇").verdict == "recognised"
     mixed = symrot.check(body + "ψ̇ cos θ + φ̇")  # the third component in the other frame
     assert (mixed.verdict, mixed.reason.partition(":")[0]) == (
-        "doubtful", "each line is a formula that symrot derives, but no body, frame or sequence has all of them for its components"
+        "doubtful", "each line is a formula that symrot derives, but no single body, frame or sequence gives all of them"
     )  # fmt: skip
 
 
@@ -264,7 +278,7 @@ def test_chains_in_latex_are_decided_link_by_link():
     ("I_G ω₁ + ΣM Δt = I_G ω₂", "relation for impulse and angular momentum about one axis"),
     ("λ_1 Ω² cos θ − λ_3 ω_3 Ω + M g R = 0", "relation for steady precession of a heavy top"),
     ("β₀² + β₁² + β₂² + β₃² = 1", "relation for the unit norm of a quaternion"),
-    ("dL/dt + omega x L = Gamma", "torque by the rate of the angular momentum in the body"),
+    ("dL/dt + omega x L = Gamma", "torque from the rate of the angular momentum in the body"),
     ("β₀ = cos(Φ/2)", "scalar component of the quaternion of axis and angle"),
     ("σ_1 = β₁/(1 + β₀)", "first component of the modified Rodrigues parameters of a quaternion"),
     ("θ = 2 atan2(√(q₁² + q₂² + q₃²), q₀)", "angle of rotation of a unit quaternion"),
@@ -279,7 +293,7 @@ def test_chains_in_latex_are_decided_link_by_link():
     ("ψ = atan2(2(q₀q₃ + q₁q₂), 1 − 2(q₂² + q₃²))", "yaw angle of a unit quaternion"),
     ("theta = acos((r11 + r22 + r33 - 1)/2)", "angle of a rotation matrix"), ("theta = 2 arccos(q_0)", "angle of rotation of a unit"),
     (r"I = \frac{2m}{5}\left(\frac{r_2^5-r_1^5}{r_2^3-r_1^3}\right)", "moment of inertia of a hollow sphere"),
-    ("τ = r × F", "torque of a force"), ("τ = dL/dt", "torque by the rate of the angular momentum"), ("K = L²/2I", "kinetic energy"),
+    ("τ = r × F", "torque of a force"), ("τ = dL/dt", "torque from the rate of the angular momentum"), ("K = L²/2I", "kinetic energy"),
     (r"\dot L = M - \omega \times L", "rate of the angular momentum in the body"), ("Ω = τ/L", "rate of steady precession"),
     ("L = m v r", "angular momentum of a point mass"), ("a_c = v²/r", "centripetal acceleration"), ("v = ω r", "speed of a point"),
     ("W = F d cos θ", "work of a force"), ("θ = ½(ω + ω_0)t", "angle at constant angular acceleration"),

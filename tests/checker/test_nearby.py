@@ -74,7 +74,7 @@ RIGHT = (
     ("phi = atan2(2 q_2 q_3 + 2 q_0 q_1, q_3^2 - q_2^2 - q_1^2 + q_0^2)", "roll angle of a quaternion"),
     ("beta = atan2(-r_31, sqrt(r_11^2 + r_21^2))", "pitch angle of a rotation matrix"),
     ("omega_p = (1 - I_3/I_T) omega_3", "rate of spin of a free symmetric body"),
-    (r"\mathbf N = \frac{3\mu}{R^3}\hat{\mathbf r}\times(I\hat{\mathbf r})", "gravity gradient by the tensor of inertia"),
+    (r"\mathbf N = \frac{3\mu}{R^3}\hat{\mathbf r}\times(I\hat{\mathbf r})", "gravity gradient from the tensor of inertia"),
     ("q = (g + h + g × h)/(1 - g · h)", "Rodrigues parameters of two rotations one after the other"),
     (r"\mathbf a = \mathbf a_r + 2\boldsymbol\Omega\times\mathbf v_r + \boldsymbol\Omega\times(\boldsymbol\Omega\times\mathbf r)"
      r" + \dot{\boldsymbol\Omega}\times\mathbf r", "acceleration of a point in a rotating frame"),

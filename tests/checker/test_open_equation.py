@@ -13,7 +13,7 @@ import symrot
 def test_an_equation_for_a_letter_says_for_which_values_it_holds(text, values):
     verdict = symrot.check(text)
     assert (verdict.verdict, verdict.counterexample, verdict.repairs) == ("definition", None, ())
-    assert verdict.reason.endswith(f"and no identity: it holds for {values}")
+    assert verdict.reason.endswith(f"not an identity: it holds for {values}")
 
 
 def test_two_letters_are_a_condition():

@@ -8,7 +8,7 @@ import symrot
 def test_a_length_and_a_lagrangian_may_have_one_letter():
     verdict = symrot.check("T = ½ m L² θ'²; V = -m g L cos θ; L = T - V")
     assert verdict.verdict == "recognised"
-    assert any("L is read as another quantity than in T and V" in note for note in verdict.notes)
+    assert any("L here is read as another quantity than L in T and V" in note for note in verdict.notes)
 
 
 def test_a_line_that_follows_from_the_others_stays_true():

@@ -73,3 +73,14 @@ def test_a_motion_ends_where_the_argument_of_a_switch_has_no_value(torque, end):
 )  # fmt: skip
 def test_a_condition_needs_a_value_only_where_it_decides(torque, omega):
     assert symrot.propagate(scene(torque)).omega[-1, 2] == pytest.approx(omega, abs=1e-12)
+
+
+@needs_compiler
+def test_a_motion_of_any_number_of_steps_goes_on_where_the_argument_of_a_switch_has_a_value():
+    """Eight steps at once gave as many samples as a search for the end of the domain: the motion ended without one."""
+    content = scene("0", 20.0).to_dict() | {"body": {"principal": [1, 2, 3]}, "initial": {"omega": [0.3, 0.2, 1.0]}}
+    motions = []
+    for torque in ("0.1*sign(sqrt(omega_1**2 + 4) - 1)", "0.1"):
+        content["torque"] = [{"kind": "expression", "torque": [torque, "0", "0"]}]
+        motions.append(symrot.propagate(content).omega)
+    assert motions[0] == pytest.approx(motions[1], abs=1e-8)

@@ -37,7 +37,7 @@ def as_matrix_of_map(relation: Relation, vectors: Collection[str], known: Collec
         rows = _matrix_of(image, vector)
         written = f"{name.value}^T" if matrix.kind == "transpose" else str(name.value)
         rows = Node("transpose", None, (rows,)) if matrix.kind == "transpose" else rows
-        note = f"{written} is read as the matrix that maps every vector {vector.value} to the other side"
+        note = f"{written} is read as the matrix that maps every {vector.value} to the vector on the other side"
         return ((sign, name, rows) if side is left else (sign, rows, name)), note
     return relation, ""
 

@@ -310,12 +310,14 @@ def _diff(scope: Scope, node: Node) -> Any:
     scope.shape(formula, node.args[0])
     last = None
     for argument in node.args[1:]:
-        variable = scope.scalar(argument, "to differentiate by")
+        variable = scope.scalar(argument, "as the variable of differentiation")
         times = 1
         if variable.is_Integer and last is not None and 1 <= variable <= 9:
             variable, times = last, int(variable) - 1
         elif not (variable.is_Symbol or isinstance(variable, AppliedUndef) or _is_rate(variable)):
-            raise scope.fail(argument, "a symbol, a function of t or its derivative to differentiate by")
+            raise scope.fail(
+                argument, "a symbol, a function of t or its time derivative as the variable of differentiation"
+            )
         for _ in range(times):
             formula = scope.bounded(formula, node, MOST_DIFFERENTIATED).diff(variable)
         last = variable

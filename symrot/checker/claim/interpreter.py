@@ -237,7 +237,7 @@ def _call(interpreter: Interpreter, node: Node) -> Any:
             raise interpreter.fail(node, f"{count} argument(s) of {name} instead of {len(arguments)}")
         return function(interpreter, node)
     if name in interpreter.values:
-        raise interpreter.fail(node, f"an operator between {name} and '(' ({name} is no function)")
+        raise interpreter.fail(node, f"an operator between {name} and '(' ({name} is not a function)")
     close = get_close_matches(name, list(BUILT_IN), 1, 0.74)
     if not interpreter.implied or close or name in UNKNOWN_HERE or [a.value for a in arguments] != ["t"]:
         known = (

@@ -21,7 +21,9 @@ from symrot.checker.typed.tokens import Token, tokens_of, without_dots
 from symrot.checker.typed.vector_names import crossed, dotted, marked, names_alone
 from symrot.errors import InputError, complaint
 
-__all__ = ["MOST_PIECES", "check_length", "read_expression", "read_relation", "readings_of", "with_time"]
+__all__ = [
+    "MOST_PIECES", "check_length", "on_constants", "read_expression", "read_relation", "readings_of", "with_time",
+]  # fmt: skip
 
 LONGEST_TEXT = 20_000
 MOST_PIECES = 5_000
@@ -108,8 +110,7 @@ class _Text:
             doubt = Doubt(("constants", 0), f"d/dt with {_listed(sorted(constants))}")
             doubts.append(doubt)
             if doubt.key not in flips:
-                are = "is read as a constant" if len(constants) == 1 else "are read as constants"
-                notes.append(f"{_listed(sorted(constants))} {are}, having no rate in the text")
+                notes.append(on_constants(sorted(constants)))
                 constants = set()
         timed |= constants
         plain |= len(lines) > 1 or any(len(sides) > 2 for _, sides, _ in lines)
@@ -158,6 +159,12 @@ def _without_totals(tokens: list[Token]) -> tuple[list[Token], list[str]]:
 
 def _listed(words: Sequence[str]) -> str:
     return words[0] if len(words) == 1 else f"{', '.join(words[:-1])} and {words[-1]}"
+
+
+def on_constants(names: Sequence[str]) -> str:
+    """Return the note for the user that ``names`` inside a time derivative are read as constants."""
+    are, them = ("is read as a constant", "it") if len(names) == 1 else ("are read as constants", "them")
+    return f"{_listed(names)} {are}, since the text has no rate of {them}, such as d{names[0]}/dt"
 
 
 def _finished(node: Node, timed: Collection[str], vectors: Collection[str], parent: str = "") -> Node:

@@ -72,7 +72,7 @@ def _with_all_words(claim: Claim, named: NamedFormula, verdict: Verdict) -> Verd
     """
     # words about the body or its axis that symrot does not understand leave open what the claim means
     if obscure := claim.context.obscure:
-        reason = f"of the context, these words are not understood: {obscure}; leave them out, or use other words"
+        reason = f"these words of the context are not understood: {obscure}; leave them out, or use other words"
         return Verdict("definition", reason=reason)
     without, verdict = verdict, _by_context(claim, named, verdict)
     if any(is_at_open_place(claim.context, known.name) for known in verdict.recognised_as):
@@ -88,7 +88,7 @@ def _with_all_words(claim: Claim, named: NamedFormula, verdict: Verdict) -> Verd
     unused = [word for rest in claim.context.rest for word in rest.split() if word not in own | letters]
     if not unused:
         return verdict
-    note = f"of the context, these words are not used: {' '.join(unused)}"
+    note = f"these words of the context are not used: {' '.join(unused)}"
     if verdict.verdict == "true":
         return replace(verdict, verdict="recognised", notes=(*verdict.notes, note))
     return replace(without if verdict.verdict == "false" else verdict, notes=(*verdict.notes, note))

@@ -59,7 +59,7 @@ def with_tangent(context: Context, verdict: Verdict) -> Verdict:
     normal = all(known.name.endswith("rim, z axis") for known in verdict.recognised_as)
     if TANGENT not in places or not normal or (context.body and context.body.axes):
         return verdict
-    note = "guessed, not stated: the tangent is normal to the plane of the body, not in it"
+    note = "guessed, not stated: the axis at the rim is normal to the plane of the body, not a tangent in that plane"
     return replace(verdict, verdict="recognised", notes=(*verdict.notes, note))
 
 

@@ -43,6 +43,9 @@ OTHER_VALUES = tuple(Rational(n, d) for n, d in ((1, 1), (2, 1), (1, 2), (-1, 1)
 """Values for symbols that occur in no hypothesis."""
 
 
+NOWHERE = "there are no real values of the letters for which both sides are real numbers"
+
+
 class Hypotheses:
     """The hypotheses of one claim, with methods that find points where they hold or prove that there is none.
 
@@ -135,7 +138,7 @@ class Hypotheses:
         """
         for need in self.needs:
             if fails_everywhere(need):
-                raise InputError(f"the sides are real numbers nowhere: {_need_text(need)} holds at no real point")
+                raise InputError(f"{NOWHERE}: {_need_text(need)} never holds")
         for hypothesis in self.ring.hypotheses:
             low, high = range_everywhere(hypothesis)
             if low > 0 or high < 0:
@@ -211,7 +214,7 @@ class Hypotheses:
             formula = poly.as_expr(*generators, *[Symbol("inverse")] * (poly.ring.ngens - len(generators)))
             reason = f"{as_text(formula)} would have to be zero and cannot be" if formula else reason
         if not self.ring.hypotheses:
-            raise InputError(f"the sides are real numbers nowhere: {reason}")
+            raise InputError(f"{NOWHERE}: {reason}")
         divisors = " where both sides are defined" if self.constraints.nonzero else ""
         raise InputError(f"the hypotheses hold at no real point{divisors}: {reason}")
 

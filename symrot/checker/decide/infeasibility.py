@@ -249,7 +249,7 @@ class _Prover:
 
 
 def _never_zero(poly: PolyElement) -> Infeasibility:
-    return Infeasibility("a polynomial that would have to be zero is zero nowhere", poly)
+    return Infeasibility("a polynomial that would have to be zero is never zero", poly)
 
 
 def _fraction(value: Any) -> Fraction:

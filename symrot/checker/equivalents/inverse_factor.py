@@ -25,7 +25,7 @@ def multiplied(claim: Claim) -> EquivalentClaim | None:
         inverse = Node("power", None, (matrix, number(-1)))
         return sign, product(list(left.args[1:])), product([inverse, right])
 
-    note = f"the equation is decided after multiplying both sides by {matrix.value}"
+    note = f"both sides of the equation are multiplied by {matrix.value} before they are compared"
     return EquivalentClaim(claim.with_relation(relation, alternatives=()), divided, note)
 
 

@@ -11,7 +11,7 @@ from symrot.checker.claim.functions import ROTATIONS
 from symrot.checker.claim.reader import MOST_PIECES, check_length
 from symrot.checker.claim.tree import Node
 from symrot.checker.latex.macros import expanded, with_spelled_functions
-from symrot.checker.latex.shorthand import shorthands
+from symrot.checker.latex.shorthand import extent_of, shorthands
 from symrot.checker.typed.cursor import Doubt
 from symrot.checker.typed.tokens import LONGEST_NUMBER
 from symrot.errors import InputError, complaint
@@ -173,7 +173,7 @@ class Cursor(cursor.Cursor):
             raise InputError(f"{place}expected at most {MOST_PIECES} numbers, names and signs, got {len(pieces)}")
         self.frames = _frames(pieces)
         self.short = shorthands(pieces, {*names.symbols, *names.functions, *names.matrices, *names.others})
-        if self.short and flips is not None and self.doubtful("shorthand", pieces[0], pieces[0].start + 1, ""):
+        if self.short and flips is not None and self.doubtful("shorthand", *extent_of(pieces, min(self.short)), ""):
             self.short = {}
         super().__init__(source, where, read(source, where, pieces))
 

@@ -67,7 +67,7 @@ MATRIX_MARKS = ("\\mathbf", "\\bm", "\\boldsymbol", "\\mathrm", "[", "\\bf", "{"
 
 INSTEAD = {
     **dict.fromkeys(("\\SI", "\\si", "\\unit"), "the number without its unit"),
-    **dict.fromkeys(("\\approx", "\\simeq"), "'=' with the digits that you know"),
+    **dict.fromkeys(("\\approx", "\\simeq"), "'=' and the value to as many digits as you know, such as x = 0.333"),
     **dict.fromkeys(("\\sim", "\\propto"), "'=' and a factor"),
     **dict.fromkeys(("\\neq", "\\ne"), "a claim with '='"),
     **dict.fromkeys(("\\to", "\\rightarrow", "\\mapsto"), "'='"),

@@ -61,10 +61,12 @@ class NamesPart(SumsPart):
         else:
             terms = (self.letter(self.next()),)
         if item.start == min(self.short):
-            letters = f"{item.text}_{{..}}" if angles else f"{item.text}\\{terms[0].value}"
+            letters = (
+                self.source[item.start : self.peek().start].strip() if angles else f"{item.text}\\{terms[0].value}"
+            )
             meaning = " + ".join(str(term.value) for term in terms)
             words = f"1 - cos({meaning})" if function == "vers" else f"{function}({meaning})"
-            self.notes.append(f"{letters} is read as {words}, and so are letters like it")
+            self.notes.append(f"{letters} is read as {words}, and similar short forms likewise")
         angle = terms[0] if len(terms) == 1 else Node("sum", None, terms)
         value = Node("call", function, (angle,))
         if function == "vers":
@@ -231,7 +233,7 @@ class NamesPart(SumsPart):
         name = str(node.value)
         if name not in self.names.matrices:
             if not self.names.implied or name in self.names:
-                raise self.fail(f"{name} to be declared as a vector or matrix (it has a mark of one)", mark)
+                raise self.fail(f"{name} to be declared as a vector or matrix ({mark.text} marks it as one)", mark)
             node = self.vector(name)
         bare = str(node.value).removesuffix(MARK)
         has_hat = mark.text == "\\hat" and bare in self.vectors

@@ -9,7 +9,7 @@ from dataclasses import dataclass
 from functools import partial
 from typing import Any, ClassVar
 
-from symrot.checker.claim.reader import read_expression, read_relation, with_time
+from symrot.checker.claim.reader import on_constants, read_expression, read_relation, with_time
 from symrot.checker.claim.tree import TIME, Node, is_derivative, nodes_of, sum_of, text
 from symrot.checker.claim.vectors import Vector, may_be_mixed, on_direction, used_vectors, without_marks
 from symrot.checker.latex.calculus import DOTS, CalculusPart
@@ -158,8 +158,7 @@ def _on_constants(sides: Sequence[Node], vectors: Collection[str]) -> tuple[str,
     names = sorted({str(part.value) for part in parts if part.kind == "name" and part not in inner} - {"pi", *vectors})
     if not names:
         return ()
-    are = "is read as a constant" if len(names) == 1 else "are read as constants"
-    return (f"{', '.join(names)} {are}, having no rate in the text",)
+    return (on_constants(names),)
 
 
 def read_latex_formula(source: str, where: str = "") -> tuple[str, tuple[Vector, ...]]:

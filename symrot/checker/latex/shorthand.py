@@ -9,7 +9,7 @@ from typing import NamedTuple
 
 from symrot.latex.tokens import GREEK, Token, tokens
 
-__all__ = ["Shorthand", "shorthands", "without_definitions"]
+__all__ = ["Shorthand", "extent_of", "shorthands", "without_definitions"]
 
 FUNCTIONS: tuple[Mapping[str, str], ...] = (
     {"c": "cos", "s": "sin", "v": "vers"},
@@ -65,6 +65,22 @@ def shorthands(pieces: Sequence[Token], declared: Collection[str] = ()) -> dict[
     bases = {name.partition("_")[0] for name in declared}
     cases = [_of_letters(pieces, letters) for letters in FUNCTIONS if not bases & {*letters}]
     return {start: form for short in cases for start, form in short.items()}
+
+
+def extent_of(pieces: Sequence[Token], start: int) -> tuple[Token, int]:
+    r"""Return the letter of the short form at the position ``start``, and the position at which its text ends.
+
+    Examples
+    --------
+    >>> from symrot.latex.tokens import tokens
+    >>> extent_of(tokens(r"2 s_{12} c_3"), 2)
+    (Token(kind='letter', text='s', start=2), 8)
+    """
+    first = next(place for place, piece in enumerate(pieces) if piece.start == start)
+    last = _after_power(pieces, first + 1)
+    last += pieces[last].text == "_"
+    last += 2 if pieces[last].text == "{" else 0  # a subscript is one token, or one in braces
+    return pieces[first], pieces[last].start + len(pieces[last].text)
 
 
 def _of_letters(pieces: Sequence[Token], letters: Mapping[str, str]) -> dict[int, Shorthand]:

@@ -394,12 +394,12 @@ class SumsPart(Cursor):
         name = self.base(self.next())
         # the only frame of the text is left out; with several, it becomes part of the name, R_B_A
         if len(self.frames) == 1:
-            self.notes.append(f"the mark {letter} before a name is read as its frame, and left out")
+            self.notes.append(f"the letter {letter} before a name is read as its frame and ignored")
             return name
         if name.kind not in ("name", "call") or not letter.isalnum():
-            raise self.fail("a name after the mark of a frame", mark)
+            raise self.fail("a letter or number as the frame of a name, such as A in {}^A v", mark)
         base, marked, _ = str(name.value).partition(MARK)
-        self.notes.append(f"the mark {letter} before {base} is read as a part of the name, {base}_{letter}")
+        self.notes.append(f"the frame {letter} before {base} is read as a part of the name, {base}_{letter}")
         return self.vector(f"{base}_{letter}") if marked else replace(name, value=f"{base}_{letter}")
 
     def bars(self, bar: tree.Node) -> Node:

@@ -207,7 +207,8 @@ def page(*groups: Iterator[Named]) -> str:
     A test may pass ``groups`` of formulas to print only these.
     """
     lines = [
-        "# What symrot derives, by fingerprint (checker/recognition/fingerprint.py), up to the names of symbols.",
+        "# The formulas that symrot derives. The key of a formula is a hash that does not depend on the names of its",
+        "# symbols (checker/recognition/fingerprint.py).",
         "# Printed by `python -m symrot.checker.recognition.known_formulas`; do not edit.",
     ]
     texts: set[str] = set()

@@ -144,7 +144,9 @@ class Point:
         if key not in self.lifted:
             in_time = name == "t" and not order
             if not in_time and name not in self.symbols and name not in self.functions:
-                raise UndefinedValue("expected to differentiate by a name that has a value, got a name without a value")
+                raise UndefinedValue(
+                    f"expected a derivative with respect to a name that has a value, got {name!r}, which has none"
+                )
             self.lifted[key] = Point(
                 {s: Dual(v, float(s == name)) for s, v in self.symbols.items()},
                 {
@@ -409,6 +411,8 @@ def _onto_hypotheses(point: Point, hypotheses: Sequence[tuple[Node, Node]]) -> P
                 slopes += list(zip(*columns, strict=True))
         except UndefinedValue:
             return None
+        if not np.isfinite([*residuals, *(slope for row in slopes for slope in row)]).all():
+            return None  # beyond the range of double precision
         if max(map(abs, residuals)) < 1e-14:
             return point
         step = np.linalg.lstsq(np.array(slopes), -np.array(residuals), rcond=None)[0]

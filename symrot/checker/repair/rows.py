@@ -86,7 +86,9 @@ def needed(value: Any, shape: tuple[int | None, int | None] = (None, None)) -> R
 def determinant(rows: Rows) -> Any:
     """Return the determinant of a square matrix of at most 6 rows; raise UndefinedValue for other matrices."""
     if len(rows) != len(rows[0]) or len(rows) > 6:
-        raise UndefinedValue("expected a square matrix of at most 6 rows in a determinant, got another one")
+        raise UndefinedValue(
+            f"expected a square matrix of at most 6 rows in a determinant, got {len(rows)} x {len(rows[0])} entries"
+        )
     if len(rows) == 1:
         return rows[0][0]
     total: Any = 0.0

@@ -22,9 +22,9 @@ from symrot.exact.limits.operations import OutOfOperations
 
 __all__ = ["for_numbers", "names_in", "verdict_on_equation"]
 
-INDICES = "it is in index notation, which is not decided; write one component, such as I_xy"
+INDICES = "it is in index notation, which symrot does not check here; write one component, such as I_xy"
 
-INDEX_CONDITION = "it is a condition on the quantities with indices in it, and no identity"
+INDEX_CONDITION = "it is a condition on the quantities with indices, not an identity"
 
 ROTATION = re.compile(r"[RCQ](_\w+)?")
 """Pattern of the names that most books use for a rotation matrix."""
@@ -100,7 +100,9 @@ def _on_inertia_matrix(claim: Claim, verdict: Verdict) -> Verdict:
     is_matrix = formula.kind == "list" or formula.value in ("Matrix", "diag")
     if not is_matrix and not any(MASS_OR_INERTIA.fullmatch(name) for name in names):
         return verdict
-    reason = "I is a tensor of inertia of which the text says nothing, or the unit matrix, which has another formula"
+    reason = (
+        "I may be a tensor of inertia, of which the text says nothing; if it is the unit matrix, the equation is false"
+    )
     return Verdict("definition", reason=reason, notes=verdict.notes, dimension=verdict.dimension)
 
 
@@ -122,7 +124,10 @@ def _with_two_meanings(claim: Claim, verdict: Verdict) -> Verdict:
     other = check_claim(replace(claim, define=define), repair=False)
     if other.verdict == "false":
         return verdict  # two meanings do not help
-    note = f"{name} is read as another quantity than in {' and '.join(sorted(others))}; if both are one, it is false"
+    note = (
+        f"{name} here is read as another quantity than {name} in {' and '.join(sorted(others))}; "
+        "if both are the same quantity, the claim is false"
+    )
     return replace(other, notes=(*other.notes, note))
 
 

@@ -20,7 +20,7 @@ __all__ = ["OUTCOMES", "verdict_on_parts", "with_all_conditions"]
 WORST_FIRST = ("false", "doubtful", "undecided", "conditional", "definition", "recognised", "true")
 """Verdicts, the worst first: the verdict on a text is the worst of the verdicts on its equations."""
 
-APART = "each line is a formula that symrot derives, but no body, frame or sequence has all of them for its components"
+APART = "each line is a formula that symrot derives, but no single body, frame or sequence gives all of them"
 
 MOST_LINES, MOST_EDITS_OF_LINE = 4, 120
 """Largest numbers of lines of a claim, and of edits of each line, in the search for an edit of one wrong line.
@@ -65,7 +65,7 @@ def verdict_on_parts(
             words = (
                 OUTCOMES[verdict.verdict]
                 if not (defines and verdict.verdict == "definition")
-                else "a definition for the other lines"
+                else "a definition that other lines use"
             )
             formulas = f": the {verdict.recognised_as[0]}" if verdict.recognised_as else ""
             relation = relation_of(as_typed(relation_text(claim.relation), claim.written))
@@ -157,7 +157,7 @@ def _as_named_chain(line: Sequence[Claim], verdicts: Sequence[Verdict], notation
             repairs = tuple(in_notation(repair, renamed, notation) for repair in under_name.repairs)
             under_name = replace(under_name, repairs=repairs)
             link = notation.relation(claim.relation)
-            note = f"{link} is no identity, since only one side has {', '.join(sorted(others))}"
+            note = f"{link} is not an identity, since only one side has {', '.join(sorted(others))}"
             verdict = replace(under_name, notes=(*under_name.notes, note))
         elif verdict.verdict == "false" and not names_in(right) - {"pi"} and _depends_on_letters(claim):
             letters = " and ".join(sorted(names_in(left) - {"pi"}))

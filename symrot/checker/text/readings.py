@@ -28,7 +28,7 @@ __all__ = ["verdict_on_readings", "verdict_on_text"]
 
 DECIDED = ("true", "false", "conditional", "undecided")
 
-UNUSED_CONTEXT = "the context is not used, since the formulas of the claim decide it"
+UNUSED_CONTEXT = "the context is not used, since the claim can be decided without it"
 
 
 def verdict_on_text(
@@ -109,7 +109,7 @@ def verdict_on_readings(
     (usual, verdict), *others = verdicts
     notes = list(verdict.notes)
     if refusal is not None and not of_usual:
-        notes.append(f"the usual reading has no meaning: {refusal}")
+        notes.append(f"read in the usual way, the text has no meaning: {refusal}")
     for reading, other in others:
         if other.verdict != verdict.verdict:
             notes.append(_on_reading(usual, reading, other, notation(reading)))
@@ -152,7 +152,7 @@ def _on_reading(usual: Reading, reading: Reading, verdict: Verdict, notation: No
     if isinstance(notation, TypedNotation):
         notation = replace(notation, plain=usual.plain or reading.plain)
     changed = _text_of(reading, notation)
-    excerpts = " and ".join(repr(place) for place in dict.fromkeys(places[:3]))
+    excerpts = " and ".join(f"'{' '.join(place.split())}'" for place in dict.fromkeys(places[:3]))
     return f"{excerpts} can be read in two ways: read as {changed}, it is {OUTCOMES[verdict.verdict]}"
 
 

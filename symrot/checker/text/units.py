@@ -108,11 +108,14 @@ def beside_units(verdict: Verdict, source: str, decide: Callable[[str], Verdict]
         return verdict
     notes = tuple(note for note in verdict.notes if not note.endswith("is read as a name, not as a unit"))
     if numbers is not None:
-        notes = (*numbers.notes, f"{end} is {OUTCOMES[numbers.verdict]}; {beginning} has letters and is not decided")
+        notes = (
+            *numbers.notes,
+            f"{end} is {OUTCOMES[numbers.verdict]}; {beginning} contains letters and is not checked",
+        )
         if numbers.verdict == "false":
             return replace(numbers, text=verdict.text, notes=notes)
     elif verdict.verdict not in ("false", "conditional", "undecided"):
         return verdict
-    reason = f"it has letters and the number with a unit {unit}: it is an equation for the letters, and no identity"
+    reason = f"it contains letters and a number with a unit, {unit}: it is an equation for the letters, not an identity"
     return Verdict("definition", text=verdict.text, context=verdict.context, reason=reason, notes=notes,
                    seconds=verdict.seconds)  # fmt: skip

@@ -135,7 +135,9 @@ class WordReader:
         for form in reversed(short):
             own = tokens[form.place : form.place + form.length]
             tokens[form.place : form.place + form.length] = form.tokens(own[0], own[-1])
-        self.notes.append(f"{excerpt} is read as {short[0].function}({short[0].angle}), and so are letters like it")
+        self.notes.append(
+            f"{excerpt} is read as {short[0].function}({short[0].angle}), and similar short forms likewise"
+        )
         return tokens
 
     def with_indices(self, tokens: list[Token]) -> list[Token]:

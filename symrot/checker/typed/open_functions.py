@@ -51,7 +51,7 @@ class OpenFunctionsPart(Cursor):
             raised = self.next()
             self.plain = True
             if not re.fullmatch(r"[+-]?\d+", raised.text, re.ASCII):
-                raise self.fail("a whole number as the power of a function, as in sin²(x)", raised.start)
+                raise self.fail("a whole number as the exponent of a function, as in sin²(x)", raised.start)
             return number(int(raised.text))
         if self.peek() not in ("^", "**"):
             return None
@@ -61,7 +61,7 @@ class OpenFunctionsPart(Cursor):
         negative = self.take("-")
         digits = self.next()
         if digits.kind != "number":
-            raise self.fail(f"a number as the power of {token.text}", digits.start)
+            raise self.fail(f"a number as the exponent of {token.text}, as in {token.text}^2 x", digits.start)
         if bracket:
             self.expect(")")
         value = self.numeral(digits)

@@ -125,6 +125,6 @@ def distinct_readings(readings: Iterable[Reading]) -> list[Reading]:
         by_trees.setdefault(reading.lines, reading)
     usual, *others = by_trees.values()
     if len(others) >= MOST_READINGS:
-        note = f"the text has more readings than the {MOST_READINGS} that are decided here; brackets leave fewer"
+        note = f"the text can be read in more than the {MOST_READINGS} ways that are checked; brackets leave fewer ways"
         usual = replace(usual, notes=(*usual.notes, note))
     return [usual, *others[: MOST_READINGS - 1]]

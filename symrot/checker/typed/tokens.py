@@ -88,7 +88,8 @@ _HINTS = {
     "\u20d7": "write cross([ax, ay, az], [bx, by, bz]) for vectors",
     "!": "a factorial is read for numbers up to 30; write other products with *",
     "%": "write /100", "∇": "write diff(f, x)", "\u00ad": "a soft hyphen: write - or delete it",
-    "&": "write two claims, each on a line", "≈": "write = with the digits that you know",
+    "&": "write two claims, each on a line",
+    "≈": "write = and the value to as many digits as you know, such as x = 0.333",
     "→": "write =", "⇒": "write two claims, each on a line",
 }  # fmt: skip
 """Character that is refused -> what to write instead."""

@@ -211,7 +211,9 @@ def measured_text(source: str) -> Measured | None:
     if main is None:
         return None
     ways = {
-        "from left to right, with units outside of the fractions before them": _Interpretation(usual, by_whole=False),
+        "with a quotient such as 1/2 s as 1/(2 s), and one such as 6 m/2 s as (6 m/2) s": _Interpretation(
+            usual, by_whole=False
+        ),
         ONE_PER_SECOND: _Interpretation(usual - {"Hz"}),
         "with lb for the force lbf": _Interpretation(usual | ({"lb"} & names)),
         STANDARD_GRAVITY: _Interpretation(usual | ({"g"} & names)),

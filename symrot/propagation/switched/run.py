@@ -303,14 +303,14 @@ class SwitchedRun(ModeChanges):
         edges = chunk.own_piece.edges
         steps = np.append(edges[:1], edges[:-1, None] + np.diff(edges)[:, None] * np.arange(1, PROBES + 1) / PROBES)
         for mode in partial:
-            times = steps
+            times, loses_value = steps, False
             for _ in range(8):  # the first time without a value is enclosed more and more closely
                 outside = self._has_no_value(regime, mode, times, chunk.own_states(times))
                 if not outside.any():
                     break
-                first = max(int(outside.argmax()), 1)
+                loses_value, first = True, max(int(outside.argmax()), 1)
                 times = np.linspace(times[first - 1], times[first], 65)
-            if len(times) == 65:
+            if loses_value:
                 last = float(times[0])
                 if last != edges[0]:
                     rows = int((np.abs(edges[:-1] - edges[0]) < abs(last - edges[0])).sum())

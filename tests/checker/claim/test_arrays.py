@@ -111,7 +111,7 @@ def test_frames_are_parts_of_names_if_there_are_several():
     both = symrot.check(r"{}^A R_B = {}^A R_C \, {}^C R_B")
     assert any("part of the name, R_B_A" in note for note in both.notes)
     one = symrot.check(r"{}^B\omega_x = {}^B\dot\phi")
-    assert any("left out" in note for note in one.notes)
+    assert any("the letter B before a name is read as its frame and ignored" in note for note in one.notes)
 
 
 @pytest.mark.parametrize(("claim", "words"), [
@@ -136,7 +136,7 @@ def test_only_the_matrix_that_has_to_be_a_rotation_is_named(claim, condition):
 def test_a_condition_on_a_matrix_says_that_nothing_defines_it():
     verdict = symrot.check("A A^T = A^T A")
     assert verdict.verdict == "definition"
-    assert verdict.reason == "it says something about A, and nothing here says what that is"
+    assert verdict.reason == "the claim is about A, but nothing here says what this is"
 
 
 @pytest.mark.parametrize(("claim", "verdict"), [

@@ -97,6 +97,12 @@ def test_the_other_reading_of_latex_is_told_if_its_verdict_differs():
     assert any(r"\cos^{-1}" in note and "it is true" in note for note in verdict.notes)
 
 
+def test_a_note_quotes_the_first_short_form():
+    notes = symrot.check(r"2 s_\theta^2 + 2 c_\theta^2 = 2").notes
+    assert notes[0] == r"s_\theta is read as sin(theta), and similar short forms likewise"
+    assert notes[1].startswith(r"'s_\theta' can be read in two ways")
+
+
 def test_words_after_an_equation_are_left_out_with_a_note():
     verdict = symrot.check(r"\sin 2x = 2\sin x\cos x \quad \text{for all } x")
     assert verdict.verdict == "true"
@@ -104,7 +110,7 @@ def test_words_after_an_equation_are_left_out_with_a_note():
 
 
 @pytest.mark.parametrize(("latex", "words"), [
-    (r"x \approx y", "'=' with the digits"), (r"\SI{3}{m} = x", "the number without its unit"), (r"\nabla f = 1", "derivatives"),
+    (r"x \approx y", "'=' and the value to as many digits"), (r"\SI{3}{m} = x", "the number without its unit"), (r"\nabla f = 1", "derivatives"),
     (r"\log x = y", r"\ln"), (r"a = b + \ldots", "all terms"),
 ])  # fmt: skip
 def test_a_refusal_says_what_to_write(latex, words):

@@ -127,8 +127,8 @@ def test_the_split_of_a_word_is_told():
 
 REFUSED = (
     ("2x", "'==' between"), ("x 2 = 1", "a product sign before a number at position 3"), ("sin = 1", "brackets after the function sin"),
-    ("sin^x y = 1", "a number as the power of sin"), ("∫x = 1", "limits and dx, as in"),
-    ("∂x = 1", "write diff"), ("Σx = 0", "write the terms"),
+    ("sin^x y = 1", "a number as the exponent of sin"), ("∫x = 1", "limits and dx, as in"),
+    ("∂x = 1", "write diff"), ("Σx = 0", "write the terms"), ("y = ¹/₀", "a divisor that is not zero at position 5"),
     ("x.applyfunc(f) == 1", "T, the transpose, or another of"), ("x.__class__ == 1", "position 3"), ("x.y == 1", "position 3"),
     ("x.free_symbols == 1", "position 3"), ("open(x + y) == 1", "'open'"), ("(x + = 1", "a number, a name"),
     ("x² + (y = 1", r"'\)'"), ("x = 1 < 2", "a chain of equals signs"), ("|x = 1", r"'\|'"), ("t' = 1", "may depend on t"),
@@ -159,7 +159,7 @@ def test_a_chain_is_decided_link_by_link():
 def test_a_chain_that_names_a_quantity_may_have_formulas_in_different_letters():
     verdict = symrot.check("I = 1/2 m r² = 1/8 m d²")
     assert verdict.verdict == "recognised"
-    assert any("is no identity, since only one side has d" in note for note in verdict.notes)
+    assert any("is not an identity, since only one side has d" in note for note in verdict.notes)
     assert any("d is the diameter" in note for note in verdict.notes)
     assert symrot.check("I = 1/2 m r² = 1/3 m r²").verdict == "false"
     assert symrot.check("I = 1/2 m r² = m r²/2").verdict == "recognised"
@@ -186,12 +186,15 @@ def test_the_letters_of_an_inertia_and_an_energy_are_quantities(claim):
 def test_the_names_after_d_dt_that_have_no_rate_are_told_as_constants():
     verdict = symrot.check("d/dt (m l² θ̇) = m l² θ̈")
     assert verdict.verdict == "true"
-    assert verdict.notes[0] == "l and m are read as constants, having no rate in the text"
+    assert verdict.notes[0] == "l and m are read as constants, since the text has no rate of them, such as dl/dt"
     assert verdict.notes[1].endswith("it is false")
     assert symrot.check("d/dt (x y) = ẋ y + x ẏ").notes == ()
-    assert symrot.check("d/dt (x y) = ẏ x").notes[0] == "x is read as a constant, having no rate in the text"
+    assert (
+        symrot.check("d/dt (x y) = ẏ x").notes[0]
+        == "x is read as a constant, since the text has no rate of it, such as dx/dt"
+    )
     latex = symrot.check(r"\frac{d}{dt}(x y) = \dot x y")
-    assert latex.notes == ("y is read as a constant, having no rate in the text",)
+    assert latex.notes == ("y is read as a constant, since the text has no rate of it, such as dy/dt",)
     assert symrot.check("M = d/dt (I ω)").reading == "M = diff(I(t)*ω(t), t)"
 
 

@@ -202,7 +202,7 @@ def _check_key(key: str, value: Any, place: str) -> None:
             isinstance(pair, list) and len(pair) == 2 and all(isinstance(v, str) for v in pair) for pair in value
         )
     elif key == "where":
-        expected = "a text, the place in a document, or a list of texts 'NAME = words'"
+        expected = "a place in a document, such as 'p. 12', or a list of meanings, such as ['J = moment of inertia']"
         fits = isinstance(value, str) or (isinstance(value, list) and all(isinstance(v, str) for v in value))
     elif key == "units":
         expected = "a table of units by symbol"

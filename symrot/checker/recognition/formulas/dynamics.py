@@ -90,7 +90,7 @@ def _gravity_gradient() -> Iterator[Named]:
     by_distance = by_rate.subs(symbols.n**2, attraction / symbols.R**3)
     for torque in (by_rate, by_distance):
         yield (
-            "torque of the gravity gradient by the tensor of inertia",
+            "torque of the gravity gradient from the tensor of inertia",
             'symrot.dynamics.torques, kind "gravity_gradient"',
             torque,
         )

@@ -68,7 +68,7 @@ def vectors() -> Iterator[Named]:
     yield "acceleration seen in a frame that rotates steadily", RELATIVE, apparent.subs(steady)
     momentum = Matrix(symbols.momentum_b)
     rates = Matrix([Symbol(f"dL_{n}", real=True) for n in (1, 2, 3)])
-    yield "torque by the rate of the angular momentum in the body", MOMENTUM, rates + OMEGA.cross(momentum)
+    yield "torque from the rate of the angular momentum in the body", MOMENTUM, rates + OMEGA.cross(momentum)
     tensor = Matrix(3, 3, [Symbol(f"I_{i}{j}", real=True) for i in "xyz" for j in "xyz"])
     yield "angular momentum I omega, with all entries of the tensor", MOMENTUM, tensor * OMEGA
     spin = Matrix([Symbol(f"p_{axis}", real=True) for axis in "xyz"])
@@ -143,7 +143,10 @@ def along_axes() -> Iterator[Named]:
     rates = Matrix(symbols.angle_rates)
     about_z = vectors.copy()
     about_z[:, 0] = Matrix([0, 0, 1])
-    for axes, title in ((vectors, "the axes of the rotations"), (about_z, "the z axis and two axes")):
+    for axes, title in (
+        (vectors, "the axes of the rotations"),
+        (about_z, "the z axis and the other two axes of the rotations"),
+    ):
         yield f"angular velocity of Euler angles along {title}", RATES, axes * rates
     for name in ("ZXZ", "ZYZ", "ZYX", "ZXY"):
         before = (euler.rate_jacobian(name).as_immutable() * rates).subs(symbols.psi, 0)
@@ -254,7 +257,7 @@ def _euler_angles() -> Iterator[Named]:
         ):  # fmt: skip
             assert expand(up * matrix_of[over] * cos(angle) - down * matrix_of[under] * sin(angle)) == 0
             pair = Matrix([up * ENTRIES[over], down * ENTRIES[under]])
-            yield f"{word} angle of {name} of a rotation matrix, atan2", PARAMETERS, pair
+            yield f"{word} {name} angle of a rotation matrix, atan2", PARAMETERS, pair
     assert matrix[2, 0] == -sin(pitch)
     for places in (((0, 0), (1, 0)), ((2, 1), (2, 2))):  # cos(theta) times the cosine and the sine of another angle
         cosine = _root_of_squares(matrix, places, cos(pitch) ** 2)
@@ -262,12 +265,12 @@ def _euler_angles() -> Iterator[Named]:
     for name in ("ZYZ", "ZXZ"):
         for places in (((0, 2), (1, 2)), ((2, 0), (2, 1))):
             sine = _root_of_squares(euler.dcm(name), places, sin(symbols.theta) ** 2)
-            title = f"second angle of {name} of a rotation matrix, atan2"
+            title = f"second {name} angle of a rotation matrix, atan2"
             yield title, PARAMETERS, Matrix([sine, ENTRIES[2, 2]])
     yield "pitch angle of a unit quaternion, asin", PARAMETERS, -quaternion.quaternion_to_dcm(Q)[2, 0]
     assert euler.dcm("XYZ")[0, 2] == sin(pitch)
     of_xyz = expand(quaternion.quaternion_to_dcm(Q)[0, 2])
-    yield "second angle of XYZ of a unit quaternion, asin", PARAMETERS, of_xyz
+    yield "second XYZ angle of a unit quaternion, asin", PARAMETERS, of_xyz
     yield PITCH, PARAMETERS, -ENTRIES[2, 0]
     assert euler.dcm("ZXZ")[2, 2] == euler.dcm("ZYZ")[2, 2] == cos(symbols.theta)
     yield SECOND_ANGLE_OF_MATRIX, PARAMETERS, ENTRIES[2, 2]
@@ -319,7 +322,7 @@ def _rodrigues() -> Iterator[Named]:
         chart = attitude.chart(name)
         length, (first, *others) = Symbol("sigma", real=True), chart.parameters
         scalar = cancel(chart.quaternion[0].subs(dict.fromkeys(others, 0)).subs(first, length))
-        yield f"scalar component of the quaternion of the {title} by their length", RODRIGUES, scalar
+        yield f"scalar component of the quaternion from the length of the {title}", RODRIGUES, scalar
         for frame in ("body", "space"):
             rates = chart.rate_matrix(frame).inverse * OMEGA
             yield f"rates of the {title} from omega in the {frame} frame", RODRIGUES, rates.applyfunc(cancel)

@@ -53,7 +53,7 @@ def tops() -> Iterator[Named]:
         yield "effective potential of a heavy top", HEAVY, effective
         without_spin = factor(cancel(effective - potential - P_PSI**2 / (2 * C))) + potential
         yield "effective potential of a heavy top without its spin", HEAVY, without_spin
-        yield "energy of a heavy top as one of a single angle", HEAVY, reduced + potential
+        yield "energy of a heavy top in terms of the nutation angle alone", HEAVY, reduced + potential
         yield from _steady(effective, spin, weight)
     yield from _free(omega)
 

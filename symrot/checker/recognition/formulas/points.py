@@ -33,7 +33,10 @@ ANY_VECTORS = (TORQUE, OF_POINT, BY_MOMENTUM, WORK)
 Every cross or dot product has this form; so a claim means such a formula only with the letters that books use for it.
 """
 
-GENERAL = ("torque by the rate of the angular momentum", "torque by the rate of the angular momentum about one axis")
+GENERAL = (
+    "torque from the rate of the angular momentum",
+    "torque from the rate of the angular momentum about one axis",
+)
 """Names of the formulas that are one symbol, or a vector of three symbols.
 
 Every letter equals such a formula; so a claim means it only with the letters that books use for it.

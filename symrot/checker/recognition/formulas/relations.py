@@ -152,15 +152,17 @@ def _heavy() -> Iterator[Relation]:
     yield Relation("a symmetric top along its axis", HEAVY, H - momentum[2], names)
     omega = rate_jacobian("ZXZ") * Matrix(symbols.angle_rates)
     general = HALF * omega.dot(diag(A, B, C) * omega)
-    yield Relation("an asymmetric body in the angles of ZXZ", HEAVY, ENERGY - general, {ENERGY: "kinetic energy of"})
+    yield Relation(
+        "an asymmetric body in terms of the ZXZ angles", HEAVY, ENERGY - general, {ENERGY: "kinetic energy of"}
+    )
     length = symbols.n
     first, second, third = omega
     across = DPHI**2 * sin(THETA) ** 2 + DTHETA**2
     assert expand(first**2 + second**2 - across).subs(sin(PSI) ** 2, 1 - cos(PSI) ** 2).expand() == 0
-    title, page = "the angular velocity in the angles of ZXZ", "derivations/euler_body_rates.md"
+    title, page = "the angular velocity in terms of the ZXZ angles", "derivations/euler_body_rates.md"
     square = expand(across + third**2).subs(sin(THETA) ** 2, 1 - cos(THETA) ** 2)
     yield Relation(title, page, length**2 - expand(square), {length: "length of"})
-    title = "the angular velocity across the axis in the angles of ZXZ"
+    title = "the transverse angular velocity in terms of the ZXZ angles"
     yield Relation(title, page, symbols.omega_1**2 + symbols.omega_2**2 - across, {})
 
 

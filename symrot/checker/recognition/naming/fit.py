@@ -157,7 +157,7 @@ def keeps_places(named: NamedFormula, known: Identification) -> bool:
         return False
     if known.name in OF_ONE_ENTRY and not all(re.fullmatch(ENTRY, new) for new in known.mapping.values()):
         return False  # asin of a letter is any angle
-    angle_of = re.match(r"(first|third) angle of (ZXZ|ZYZ) of a rotation matrix", known.name)
+    angle_of = re.match(r"(first|third) (ZXZ|ZYZ) angle of a rotation matrix", known.name)
     if angle_of and re.fullmatch(LAST_ANGLE if angle_of[1] == "first" else FIRST_ANGLE, named.name):
         return False
     letters = [*known.mapping.values()] or [*names_in(named.formula)]

@@ -85,13 +85,13 @@ def verdict_on_name(claim: Claim, named: NamedFormula, repair: bool) -> Verdict:
     shared = sorted(own & others if own and others else own | others)
     if named.solve is None and shared:
         names = " and ".join(filter(None, [", ".join(shared[:-1]), shared[-1]]))
-        what = "that is" if len(shared) == 1 else "these are"
-        reason = f"it says something about {names}, and nothing here says what {what}"
+        what = "this is" if len(shared) == 1 else "these are"
+        reason = f"the claim is about {names}, but nothing here says what {what}"
     elif named.solve is None:
         reason = "its sides have no letter in common, and nothing here says what these quantities are"
     else:
         reason = (
-            f"nothing here says what {named.name} is, and symrot derives no formula like the other side: "
+            f"nothing here says what {named.name} is, and symrot derives no formula like the one on the other side: "
             "it may be a definition"
         )
     return Verdict("definition", reason=reason)

@@ -11,7 +11,7 @@ FAULT_DESCRIPTIONS = {
     "sign_of_term": "a term has the wrong sign",
     "overall_sign": "a whole side has the wrong sign",
     "commutator_order": "the factors of a matrix product are exchanged",
-    "factor": "a factor is wrong, missing or too many",
+    "factor": "a factor is wrong, missing or superfluous",
     "exponent": "a power is wrong, such as a square that is missing",
     "half_angle": "an angle is used in place of its half",
     "double_half_angle": "an angle is used in place of its double",
