@@ -105,8 +105,8 @@ class Samples(ABC):
         Returns
         -------
         pandas.DataFrame
-            The index is ``t``, s. ``attrs["units"]``, ``attrs["frames"]`` and ``attrs["meanings"]`` describe the
-            columns.
+            The index is ``t``, s; for an ensemble, ``(trajectory, t)``. ``attrs["units"]``, ``attrs["frames"]`` and
+            ``attrs["meanings"]`` describe the columns.
 
         Raises
         ------
@@ -126,8 +126,8 @@ class Samples(ABC):
         Returns
         -------
         xarray.Dataset
-            The dimensions are ``time`` and the axes of the quantity, such as ``body_axis``. Each variable has the
-            attributes ``units``, ``long_name`` and ``frame``.
+            The dimensions are ``time`` and the axes of the quantity, such as ``body_axis``; for an ensemble,
+            ``trajectory`` comes first. Each variable has the attributes ``units``, ``long_name`` and ``frame``.
 
         Raises
         ------
@@ -177,7 +177,7 @@ class MotionSamples(Samples):
 
     @cached_property
     def axis(self) -> Floats:
-        """Direction of the symmetry axis (without one: of the third body axis), space components, shape (..., 3)."""
+        """Direction of the body axis number :attr:`axis_number`, space components, shape (..., 3)."""
         return conversions.quaternion_to_axis(self.quaternion, self.axis_number)
 
     def _labelled(self, quantities: Sequence[str] | None = None) -> list[Labelled]:
