@@ -8,11 +8,13 @@ from typing import Any
 import numpy as np
 from numpy.typing import NDArray
 
-from symrot.errors import InputError
+from symrot.errors import InputError, with_hint
+from symrot.formula.exact_numbers import show
 from symrot.kinematics import conversions
 from symrot.results import tables
 from symrot.results.labels import About, Labelled, about, labelled
 from symrot.scene.scene import Scene
+from symrot.scene.tables import QUANTITIES
 
 __all__ = ["MotionSamples", "Samples"]
 
@@ -201,5 +203,8 @@ class MotionSamples(Samples):
                     'euler: expected an Euler sequence, such as "ZXZ", as output.sequence of the scene, got none'
                 )
             return self.euler(output.sequence, degrees=output.degrees)
+        if name not in QUANTITIES:
+            message = f"quantity: expected one of {', '.join(QUANTITIES)}, got {show(name)}"
+            raise InputError(with_hint(message, name, QUANTITIES))
         value: Floats = getattr(self, name)
         return value
