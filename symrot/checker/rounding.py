@@ -40,7 +40,10 @@ def rounded_value(claim: Claim) -> str:
         return ""
     mantissa, _, power = claim.printed.strip().lower().partition("e")
     places = len(mantissa.partition(".")[2])
-    right = f"{float(interval.mid) / 10.0 ** int(power or 0):.{places}f}" + (f"e{power}" if power else "")
+    try:
+        right = f"{float(interval.mid) / 10.0 ** int(power or 0):.{places}f}" + (f"e{power}" if power else "")
+    except ArithmeticError:  # beyond the range of double precision
+        return ""
     return right if decide_value(replace(claim, printed=right)).verdict == "true" else ""
 
 

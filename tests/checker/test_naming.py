@@ -69,6 +69,20 @@ def test_a_right_formula_is_recognised_in_its_usual_reading_first(claim, name):
     assert not verdict.repairs and verdict.diagnosis.code == "none" and verdict.counterexample is None
 
 
+def test_a_negative_root_is_recognised_only_for_a_quantity_with_a_sign():
+    assert symrot.check("omega = -sqrt(omega_0^2 + 2*alpha*theta)").verdict == "recognised"
+    assert symrot.check("q0 = -sqrt(1 + R_11 + R_22 + R_33)/2").verdict == "recognised"
+    for positive in ("k = sqrt((a^2 + b^2)/12)", "T = 2*pi*sqrt(L/g)"):
+        verdict = symrot.check(positive.replace("= ", "= -"))
+        assert verdict.verdict in ("doubtful", "definition")
+        assert symrot.check(positive).verdict == "recognised"
+
+
+def test_a_sine_or_cosine_of_zero_is_read():
+    assert symrot.check("I_zz = m*a^2*cos(0)*cos(b)").verdict == "definition"
+    assert symrot.check("T = m*v^2/2*cos(x - x)*sin(b)").verdict == "definition"
+
+
 WRONG = (
     (r"\omega_x = \dot\phi \sin\theta \sin\psi - \dot\theta \cos\psi", "sign_of_term",
      "first component of the angular velocity of ZXZ in the body frame"),

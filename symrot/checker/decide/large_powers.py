@@ -106,7 +106,7 @@ def _angle_degree(argument: Expr, bases: Mapping[Expr, Fraction]) -> int:
     total = 0
     for term in argument.as_ordered_terms() if argument.is_Add else [argument]:
         number, atom = term.as_coeff_Mul()
-        constant = atom is pi and cyclotomic.needs_cyclotomic_field(int(number.q))
+        constant = atom is pi and cyclotomic.has_affordable_degree(int(number.q))
         if atom in bases and number.is_Rational:
             total += abs(int(Fraction(int(number.p), int(number.q)) / bases[atom]))
         else:

@@ -411,6 +411,8 @@ def _onto_hypotheses(point: Point, hypotheses: Sequence[tuple[Node, Node]]) -> P
                 slopes += list(zip(*columns, strict=True))
         except UndefinedValue:
             return None
+        if not np.isfinite([*residuals, *(slope for row in slopes for slope in row)]).all():
+            return None  # beyond the range of double precision
         if max(map(abs, residuals)) < 1e-14:
             return point
         step = np.linalg.lstsq(np.array(slopes), -np.array(residuals), rcond=None)[0]

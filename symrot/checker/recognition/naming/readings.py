@@ -52,6 +52,11 @@ MOST_READINGS = 4
 SQUARED = ", squared"
 """The end of the name of a known formula that gives the square of the named quantity."""
 
+SIGNED = ("angular velocity", "scalar component")
+"""Beginnings of the names of such formulas for a quantity that may be negative: for others, a claim ``k = -sqrt(..)``
+has a wrong sign.
+"""
+
 
 def least_symbols_related(left: Node, right: Node) -> int:
     """Return the smallest number of symbols with which ``left == right`` is compared with known relations."""
@@ -140,10 +145,12 @@ def readings_of_formula(
     letters = {*letters_of(formula)}
     is_tangent = named.side.kind == "call" and named.side.value == "tan"
     searched, ending = _without_function(value, is_tangent)
+    is_negative = ending == SQUARED and value.as_coeff_Mul()[0] < 0
 
     def fits(known: Identification) -> bool:
         return (
             ending_of(known.name) == ending
+            and not (is_negative and not known.name.startswith(SIGNED))
             and fits_quantity(named, known, is_matrix(value))
             and fits_context(claim.context, named, replace(known, name=known.name.removesuffix(ending)), letters)
             and not has_other_length(known.name, known.mapping.items())
