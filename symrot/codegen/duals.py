@@ -67,8 +67,8 @@ class Dual:
         return Dual(other, {}) / self
 
     def __pow__(self, exponent: int) -> "Dual":
-        raised: Dual = power(self, exponent)
-        return raised
+        raised = power(self, exponent)
+        return raised if isinstance(raised, Dual) else Dual(raised, {})
 
 
 def dual_functions(functions: Mapping[str, Callable[..., Any]], least_root: Any = 0) -> dict[str, Callable[..., Any]]:

@@ -6,7 +6,9 @@ __all__ = ["power"]
 
 
 def power(base: Any, exponent: int) -> Any:
-    """Return ``base**exponent``, with few multiplications: x^5 is ``(x*x)*(x*x)*x``. The exponent is not 0."""
+    """Return ``base**exponent``, with few multiplications: x^5 is ``(x*x)*(x*x)*x``, and x^0 the int 1."""
+    if exponent == 0:
+        return 1
     if exponent < 0:
         return 1 / power(base, -exponent)
     result = base

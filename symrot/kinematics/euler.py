@@ -127,7 +127,10 @@ def dcm(sequence: str, angles: Sequence[Any] | None = None) -> ImmutableMatrix:
 
 
 def lock_indicator(sequence: str, dcm_sb: Matrix) -> Expr:
-    """Return the entry ``e_first^T dcm e_last``, which is +1 or -1 if and only if the sequence is in gimbal lock."""
+    """Return the entry ``e_first^T dcm_sb e_last`` of a matrix of attitude.
+
+    It is +1 or -1 if and only if the sequence is in gimbal lock at this attitude.
+    """
     first, _, last = factors(sequence)
     # the cosine of the angle between the first axis and the rotated last axis
     return dcm_sb[first.axis, last.axis]
@@ -136,19 +139,16 @@ def lock_indicator(sequence: str, dcm_sb: Matrix) -> Expr:
 def _core(sequence: str, frame: str, angles: Sequence[Any] | None) -> tuple[Matrix, Matrix, Matrix]:
     """Return three factors of the rate matrix ``B = carry * core * order``.
 
-    ``core`` depends on the middle angle only, ``carry`` is a rotation to the components of ``frame``, and ``order``
-    permutes columns.
+    ``core`` has the three rotation axes as columns and depends on the middle angle only; ``carry`` rotates them to
+    components in ``frame``, and ``order`` sorts them in the order of the angles.
     """
     first, middle, last = factors(sequence, angles)
-    # core has the three axes in the frame of the middle rotation, and depends on the middle angle only; carry rotates
-    # them to components in frame.
     if check_frame(frame) == "body":
         carry = last.rotation.T
         core = Matrix.hstack(middle.rotation.T * first.direction, middle.direction, last.direction)
     else:
         carry = first.rotation
         core = Matrix.hstack(first.direction, middle.direction, middle.rotation * last.direction)
-    # sorts the columns in order of application
     order = zeros(3)
     for row, factor in enumerate((first, middle, last)):
         order[row, factor.place] = 1
@@ -198,17 +198,16 @@ class EulerRateMatrix(RateMatrix):
         return tuple(other for other, met in meetings.items() if met is S.EmptySet)
 
     def regular_at(self, angles: Sequence[Any] | None = None) -> tuple[str, ...]:
-        """Return the sequences, of all 24, that are not in gimbal lock at the attitude given by ``angles`` of this
-        sequence.
+        """Return the sequences, of all 24, that are not in gimbal lock at the attitude with the given angles, rad.
 
-        Without ``angles``, a sequence is left out only if it is in gimbal lock at every attitude.
+        ``angles`` belong to this sequence; default: the angles of this matrix. If they contain symbols, a sequence is
+        left out only if it is in gimbal lock for all values of the symbols.
         """
         own_angles = expressions(
             self.parameters if angles is None else angles, 3, f"the Euler sequence {self.sequence}"
         )
         # a float is the exact rational number that it represents
         attitude = dcm(self.sequence, [Rational(angle) if angle.is_Float else angle for angle in own_angles])
-        # With symbols, a sequence is left out only if it locks for all their values.
         return tuple(other for other in SEQUENCES if not _is_one(lock_indicator(other, attitude) ** 2))
 
 
@@ -282,8 +281,9 @@ def _rate_jacobian(sequence: str, frame: str, parameters: tuple[Expr, ...]) -> E
 def sequences_at_lock(sequence: str) -> dict[str, Set]:
     """Return a map from each other Euler sequence to the attitudes at which it and ``sequence`` are in gimbal lock.
 
-    The attitudes are given as a set of values, rad, of the first angle of ``sequence`` (extrinsic: the third), while
-    the third (extrinsic: the first) is zero. The set is empty if there is no such attitude.
+    ``sequence`` is in gimbal lock at certain values of its middle angle. An attitude is given by the value, rad, of its
+    first angle (extrinsic: its third), while its third angle (extrinsic: its first) is zero. The set of these values is
+    empty if there is no such attitude.
     """
     left, _, _ = factors(sequence)
     # in gimbal lock only the sum or difference of the outer angles matters, so one of them is zero
@@ -309,7 +309,7 @@ def quaternion_of_euler(sequence: str, angles: Sequence[Any] | None = None) -> I
 def euler_of_quaternion(sequence: str, q: Sequence[Any] | Matrix = symbols.quaternion) -> ImmutableMatrix:
     """Return the Euler angles of a quaternion of any norm, shape (3, 1), rad.
 
-    The first and last angle are in (-2 pi, 2 pi).
+    The first and the last angle are between -2 pi and 2 pi; both are undefined (SymPy's nan) in gimbal lock.
 
     Notes
     -----
@@ -330,7 +330,7 @@ def euler_of_quaternion(sequence: str, q: Sequence[Any] | Matrix = symbols.quate
     # Sums and differences of half angles by atan2 keep full accuracy up to gimbal lock, where acos does not.
     half_sum, half_difference = atan2(b, a), atan2(d, c)
     low, high = sqrt(a**2 + b**2), sqrt(c**2 + d**2)
-    # middle angle in [0, pi] or [-pi/2, pi/2] (Tait-Bryan); the others in (-2 pi, 2 pi)
+    # middle angle in [0, pi] or [-pi/2, pi/2] (Tait-Bryan)
     values = {
         first.place: half_sum + half_difference,
         middle.place: 2 * atan2(high, low) if proper else atan2(expand(c**2 + d**2 - a**2 - b**2), 2 * low * high),
@@ -340,7 +340,10 @@ def euler_of_quaternion(sequence: str, q: Sequence[Any] | Matrix = symbols.quate
 
 
 def euler_of_dcm(sequence: str, dcm_sb: Matrix) -> ImmutableMatrix:
-    """Return the Euler angles of the matrix ``dcm_sb`` as expressions, shape (3, 1), rad, in order of application."""
+    """Return the Euler angles of the matrix ``dcm_sb`` as expressions, shape (3, 1), rad, in order of application.
+
+    The first and the last angle are undefined (SymPy's nan) in gimbal lock.
+    """
     first, middle, last = factors(sequence)
     proper = first.axis == last.axis
     # The image of the last axis gives the first and the middle angle, that of the first axis under the transposed dcm

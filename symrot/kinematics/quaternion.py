@@ -189,13 +189,13 @@ def _dcm(q: tuple[Expr, ...], form: str) -> ImmutableMatrix:
 
 
 def quaternion_of_dcm(dcm_sb: Matrix, pivot: int = 0) -> ImmutableMatrix:
-    """Return a quaternion of a dcm, shape (4, 1), by a formula that divides by the component ``q_pivot``."""
+    """Return a unit quaternion of a dcm, shape (4, 1), by a formula that divides by its component ``q_pivot``."""
     if dcm_sb.shape != (3, 3):
         raise InputError(f"expected a dcm of shape (3, 3), got shape {dcm_sb.shape}")
     if pivot not in range(4):
         raise InputError(f"pivot: expected 0, 1, 2 or 3, the index of the component to divide by; got {pivot!r}")
-    # All pivots give the same quaternion up to sign, if the divisor is not zero. The largest divisor (at least 1/2)
-    # loses no digits.
+    # All pivots give the same quaternion up to sign, if q_pivot is not zero. The largest component (at least 1/2) as
+    # pivot loses no digits.
     squares = _four_q_q(dcm_sb)
     return ImmutableMatrix(squares[pivot, :].T / (2 * squares[pivot, pivot] ** Rational(1, 2)))
 

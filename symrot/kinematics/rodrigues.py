@@ -153,8 +153,9 @@ def chart(name: str) -> Chart:
 
 
 def shadow(values: Sequence[Any] | Matrix | None = None) -> ImmutableMatrix:
-    """Return the shadow ``-s / |s|^2`` of modified Rodrigues parameters s: the other parameters of the same
-    attitude.
+    """Return the shadow ``-s / |s|^2`` of modified Rodrigues parameters s: the other parameters of the same attitude.
+
+    The shadow of s = 0 is undefined (SymPy's nan).
     """
     # the parameters of -q. One set has length at most 1; switching to it keeps every motion bounded.
     return ImmutableMatrix(MODIFIED.of_quaternion(-MODIFIED.quaternion(values)).applyfunc(cancel))

@@ -1,8 +1,9 @@
 """Rotation vector (axis times angle): the exponential map and its Jacobians, and the axis-angle pair.
 
 Every formula is a function of the skew matrix K of the vector, computed from the eigenvalues of K
-(:func:`symrot.kinematics.rotations.function_of_skew`). The coefficients have removable singularities at zero angle;
-their values there are limits. Convention: :mod:`symrot.conventions`. Proof: ``derivations/rotation_vector.md``.
+(:func:`symrot.kinematics.rotations.function_of_skew`). The coefficients have removable singularities at zero angle, so
+that functions of the zero vector return limits. Convention: :mod:`symrot.conventions`. Proof:
+``derivations/rotation_vector.md``.
 """
 
 from collections.abc import Callable, Sequence
@@ -57,6 +58,11 @@ def _stretch(z: Expr) -> Expr:
     return 2 * sinh(z / 2) / z
 
 
+def _half_sine(size: Expr) -> Expr:
+    """Return ``sin(a/2) / (a/2)`` for the length a of a rotation vector, and its limit 1 for a = 0."""
+    return Integer(1) if size.is_zero else sin(size / 2) / (size / 2)
+
+
 def _jacobian_function(frame: str) -> Callable[[Expr], Expr]:
     """Return the function f of the rate matrix ``B = f(K)``, K the skew matrix of the rotation vector."""
     # The mean over s in [0, 1] of exp(-s K) (body) or exp(s K) (space). For the body, f(z) = (1 - exp(-z)) / z: a
@@ -78,6 +84,9 @@ def _coefficients(which: str) -> tuple[Expr, Expr, Expr]:
 
 
 def _combine(which: str, vector: Sequence[Expr], size: Expr) -> ImmutableMatrix:
+    """Return ``f(K)`` for the function f named ``which`` and the skew matrix K of a vector of length ``size``."""
+    if size.is_zero:  # each of these functions is 1 at zero
+        return ImmutableMatrix(eye(3))
     c0, c1, c2 = (c.xreplace({_size: size}) for c in _coefficients(which))
     matrix = skew(vector)
     return ImmutableMatrix(c0 * eye(3) + c1 * matrix + c2 * matrix**2)
@@ -110,7 +119,7 @@ def jacobian(frame: str = "body", vector: Sequence[Any] | Matrix = symbols.rotat
     vector = expressions(vector, 3, "a rotation vector")
     size = length(vector)
     # At lengths 2 pi n, vectors of all directions describe the same attitude.
-    stretch = sin(size / 2) / (size / 2)
+    stretch = _half_sine(size)
     return RateMatrix.build(
         _combine(check_frame(frame), vector, size),
         RateFacts(
@@ -131,14 +140,14 @@ def jacobian(frame: str = "body", vector: Sequence[Any] | Matrix = symbols.rotat
 def _along(frame: str, size: Expr) -> tuple[Expr, ImmutableMatrix]:
     """Return (determinant, inverse) of the rate matrix at the rotation vector ``size * n``, for a unit axis n."""
     vector = tuple(size * n for n in symbols.axis)
-    return (sin(size / 2) / (size / 2)) ** 2, _combine(f"{frame} inverse", vector, size)
+    return _half_sine(size) ** 2, _combine(f"{frame} inverse", vector, size)
 
 
 def quaternion_of_rotation_vector(vector: Sequence[Any] | Matrix = symbols.rotation_vector) -> ImmutableMatrix:
     """Return the unit quaternion, shape (4, 1), of a rotation vector (axis times angle, rad): the exponential map."""
     vector = expressions(vector, 3, "a rotation vector")
     size = length(vector)
-    return ImmutableMatrix([cos(size / 2), *(sin(size / 2) / size * component for component in vector)])
+    return ImmutableMatrix([cos(size / 2), *(_half_sine(size) / 2 * component for component in vector)])
 
 
 def rotation_vector_of_quaternion(q: Sequence[Any] | Matrix = symbols.quaternion) -> ImmutableMatrix:

@@ -29,7 +29,7 @@ class Cursor:
     open_bars : tuple of str
         The bars, ``|`` or ``\|``, that are open at the cursor: the next one of the same text closes them.
     after_space : set of int
-        Positions of the items that follow a LaTeX command for space.
+        Positions in the source of the items that follow a LaTeX command for space.
     """
 
     synonyms: ClassVar[Mapping[str, str]] = {}

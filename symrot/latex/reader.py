@@ -11,7 +11,7 @@ __all__ = ["read"]
 DEEPEST_NESTING = 60
 REPEATED = {"_": "only one subscript", "^": "brackets around a repeated power", "'": "primes in one place"}
 AFTER = frozenset(["script", "prime", "space"])
-"""Kinds of tokens that may be a script (index, power or prime) of the item before them."""
+"""Kinds of tokens after an item: a script (index, power or prime) of the item, or a space, after which one may come."""
 
 
 def read(source: str, where: str = "", pieces: Sequence[Token] = ()) -> Row:
@@ -22,8 +22,8 @@ def read(source: str, where: str = "", pieces: Sequence[Token] = ()) -> Row:
     Raises
     ------
     InputError
-        If a group, matrix or delimiter is not closed, an argument is missing, or an item has two indices or two powers;
-        the message names the position.
+        If a group, matrix or delimiter is not closed, an argument is missing, an item has two indices or two powers, or
+        there are more than :data:`DEEPEST_NESTING` nested levels; the message names the position.
     """
     return _with_open_fractions(_Reader(source, where, pieces or tokens(source)).row("", "end"))
 
@@ -162,7 +162,10 @@ def _with_old_fractions(row: Row) -> Row:
 
 
 def _with_open_fractions(row: Row) -> Row:
-    r"""Return a formula in which ``above \over below`` outside of braces is a fraction up to the next equals sign."""
+    r"""Return a formula in which ``above \over below`` outside of braces has become a fraction.
+
+    Such a fraction extends from the equals sign, comma, ``&`` or ``\\`` before it to the next one.
+    """
     if all(item.text != "\\over" for item in row.items):
         return row
     items: list[Node] = []

@@ -1,8 +1,8 @@
 """The tree of a LaTeX formula: how the formula is written, without its meaning.
 
 Operators, relations and brackets such as ``(`` are separate tokens of a row, because only the meaning tells which
-brackets match. Every node has ``start``, its position in the source, ``text``, its first command or mark, and a
-``kind``.
+brackets match. Every node has ``start``, its position in the source, and, like a token, ``text`` and ``kind``, of which
+one or both may be empty.
 """
 
 from dataclasses import dataclass
@@ -106,7 +106,7 @@ Node = Token | Row | Accent | Font | Script | Scripts | Fraction | Root | Delimi
 
 
 def alone(node: Node) -> Node:
-    """Return the only item inside nested groups in braces, x for ``{{x}}``; return any other node unchanged."""
+    """Return a node without the groups in braces that have a single item: x for ``{{x}}``, ``{x y}`` for itself."""
     while isinstance(node, Row) and len(node.items) == 1:
         node = node.items[0]
     return node

@@ -15,13 +15,13 @@ class Mistake:
     Attributes
     ----------
     words : str
-        How students come to write the formula: a sentence that precedes it on the page.
+        How students come to write the formula: the text before it on the page.
     claim : str
         The formula in the language of claims.
     facts : tuple of str
         Hypotheses of the claim.
     lesson : str
-        The correct statement: a sentence that follows the verdict on the page.
+        The correct statement: the text after the verdict on the page.
     repair : int or None
         Index of the checker's repair (corrected formula) that the page prints; None if no repair helps the student.
 
@@ -56,7 +56,7 @@ class Number:
     entry : int or None
         Index of the entry if the right side is a matrix, counted row by row from 0.
     where : mapping of Symbol to Expr
-        Expressions for symbols that have no value in the scene, in terms of symbols that have one.
+        Replacements of symbols in the formula, simultaneous, by expressions in symbols that have a value in the scene.
     power : Rational
         Exponent that is applied to the formula, such as 1/2 for a rate whose square the step gives.
     scale : Expr

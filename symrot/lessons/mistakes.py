@@ -38,8 +38,9 @@ def _verdict(claim: str, facts: tuple[str, ...]) -> Verdict:
 
 
 def mistake_passages(mistake: Mistake) -> Iterator[Passage]:
-    """Yield the paragraphs of the section "A common mistake": wrong formula, counterexample, true formula, shell
-    command.
+    """Yield the paragraphs of the section "A common mistake": wrong formula, counterexample and lesson, shell command.
+
+    A corrected formula is named if the checker has one and ``mistake.repair`` is not None.
     """
     verdict = refutation(mistake)
     yield Passage(f"{mistake.words} They write `{mistake.claim}`.")
@@ -57,7 +58,7 @@ def mistake_passages(mistake: Mistake) -> Iterator[Passage]:
 
 
 def _facts(facts: tuple[str, ...]) -> str:
-    """Return a sentence with the hypotheses of a claim, equations first; empty if there are none."""
+    """Return a sentence with the hypotheses of a claim, those of the form ``x > 0`` last; empty if there are none."""
     # as symrot check takes them, such as A == B or m > 0
     equations = [f"`{text}`" for text in facts if not text.endswith(" > 0")]
     positive = [f"`{text.removesuffix(' > 0')}`" for text in facts if text.endswith(" > 0")]

@@ -39,12 +39,13 @@ def numbers_of(page: Page, lesson: Lesson) -> Iterator[Passage]:
 
 
 def value_of(page: Page, number: Number, scene: str) -> tuple[Expr, Expr]:
-    """Return the formula of a number, in symbols that have a value in the scene, and its rounded value.
+    """Return the formula of a number, in symbols that have a value in the scene, and its value to 50 digits.
 
     Raises
     ------
     InputError
-        If no step of the page begins with ``number.step``, or the scene gives no value for a symbol of the formula.
+        If no step of the page begins with ``number.step``, if the scene gives no value for a symbol of the formula, if
+        the value is not real, or if the formula is a matrix and ``number.entry`` is None.
 
     Examples
     --------
@@ -119,7 +120,7 @@ def _bare(latex: str) -> str:
 
 
 def _digits(constants: dict[Expr, Expr], results: list[tuple[Expr, Expr]]) -> int:
-    """Return how many digits the printed constants of a scene need, so that the results can be computed from them.
+    """Return how many digits, 4 to 16, the printed constants of a scene need to reproduce the results.
 
     ``results`` are formulas with their values. If a formula is a difference of nearly equal numbers, the constants
     need more digits than the result.

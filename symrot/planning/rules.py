@@ -150,7 +150,10 @@ def _silent(torque: FormulaTorque, scene_torque: Torque) -> list[str]:
 
 
 def _is_zero(formula: str) -> bool:
-    """Return whether a formula, given as text, is zero, such as ``"0"`` or ``"1 - 1"``; False if it contains names."""
+    """Return whether a formula, given as text, is zero, such as ``"0"`` or ``"1 - 1"``.
+
+    False if it contains names or functions.
+    """
     node = expression.parse(formula, switching=True)
     if expression.names(node):
         return False
@@ -190,7 +193,6 @@ def _torque_along(torque: TorqueStructure, axis: int, scene: Scene, scene_torque
     Return False also for formulas and for other kinds of torque, whose direction is not examined.
     """
     if isinstance(torque, FormulaTorque):
-        # the direction of formulas is not examined
         return False
     if torque.kind == "constant_body":
         return _only_along(torque.vector("torque"), axis)
@@ -307,9 +309,9 @@ def _constant(scene: Scene, *axes: int) -> tuple[Pattern | None, Pattern | None,
 
 
 def _no_moment_about(torque: TorqueStructure, axis: int) -> bool:
-    """Return whether a torque never has a component along the symmetry axis ``axis``, 0 to 2.
+    """Return whether a torque is known to have no component along the symmetry axis ``axis``, 0 to 2, at any time.
 
-    The spin about this axis is then constant.
+    The spin about this axis is then constant. A formula counts only if it is written as ``0`` or ``0.0``.
     """
     if isinstance(torque, FormulaTorque):
         return torque.frame == "body" and torque.formulas[axis].strip() in ("0", "0.0")

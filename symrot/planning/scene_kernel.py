@@ -138,6 +138,9 @@ def _loaded(saved: SavedParameters) -> Parameters:
 
 
 def bind(parameters: Parameters, constants: Mapping[str, Fraction]) -> list[float]:
-    """Return the values of parameters, pairs (name, formula), computed exactly from constants and rounded once."""
+    """Return the values of parameters, pairs (name, formula), for exact constants, each rounded to a double.
+
+    Sums, products and quotients are exact; pi and functions such as sin have more than 60 digits.
+    """
     values = {"pi": number.PI, **constants}
     return [float(evaluate(node, values, EXACT_FUNCTIONS)) for _, node in parameters]

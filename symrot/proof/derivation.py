@@ -192,7 +192,8 @@ class Derivation(PrintedPage):
         Raises
         ------
         ProofError
-            If left - right does not reduce to zero; the message has the residual and a point where the sides differ.
+            If left - right does not reduce to zero; the message has the residual and, if known, a point where the sides
+            differ. Also if an equation of ``via`` or a displayed form does not hold, or if ``board`` cannot be parsed.
         InputError
             If an expression is not accepted by :func:`symrot.exact.decide.decide`.
         """
@@ -256,12 +257,11 @@ class Derivation(PrintedPage):
     def _proven(self, claim: str, left: Any, right: Any, relations: Sequence[Any]) -> Decision:
         """Return the verdict on the equation ``left = right`` under the hypotheses ``relations``.
 
-        ProofError is raised if it does not hold.
+        ProofError, which names the sentence ``claim`` of the step, is raised if the equation is not proven.
         """
         verdict = decide(left, right, relations)
         if verdict.verdict != "true":
             where = f" ({verdict.counterexample})" if verdict.counterexample else ""
-            # ``claim`` is the sentence that the step states
             raise ProofError(
                 f"{self.name}, step {len(self.steps) + 1}, {claim!r} does not hold: left - right = "
                 f"{_short(verdict.residual)}{where}"
@@ -273,7 +273,7 @@ class Derivation(PrintedPage):
     ) -> bool:
         """Return whether ``display``, the form printed for a side, was parsed and proven equal to ``side``.
 
-        A form that cannot be parsed is only a label, and gives False.
+        A form that cannot be parsed, or that has another shape than the side, is only a label and gives False.
 
         Raises
         ------
@@ -298,9 +298,18 @@ class Derivation(PrintedPage):
         return True
 
     def _read(self, text: str, sides: tuple[Any, Any] = (S.Zero, S.Zero)) -> list[Any]:
-        """Return the values of the sides of an equation in LaTeX: two for ``X = Y``, one for ``X`` alone.
+        r"""Return the values of the sides of an equation in LaTeX: two for ``X = Y``, one for ``X`` alone.
 
-        Symbols of the formulas ``sides`` need no declared meaning.
+        If the first of several sides cannot be parsed, it is a new name: it is left out, and stands for the next side
+        in later LaTeX. Further equations after ``, \quad`` are checked, and define names for this text. Symbols of the
+        formulas ``sides`` need no declared meaning.
+
+        Raises
+        ------
+        Unread
+            If another side cannot be parsed.
+        ProofError
+            If a further equation does not hold.
         """
         used = {symbol for side in sides for symbol in side.free_symbols}
         names = {key(formula(symbol)): symbol for symbol in used} | self.names
@@ -324,12 +333,14 @@ class Derivation(PrintedPage):
         return values
 
     def _note(self, left: Any, right: Any) -> None:
-        """Declare that ``left``, a symbol or the LaTeX of a name, stands for ``right`` in later LaTeX."""
+        """Declare that ``left``, a symbol or the LaTeX of a name, stands for ``right`` in later LaTeX.
+
+        If ``right`` is LaTeX that cannot be parsed, a name loses its meaning instead.
+        """
         if isinstance(right, str):
             try:
                 right = self._read(right)[-1]
             except Unread:
-                # LaTeX that cannot be parsed: the name loses its meaning
                 self.names.pop(key(left) if isinstance(left, str) else "", None)
                 return
         if isinstance(left, str) and left:
@@ -365,7 +376,7 @@ def _tidied(conditions: Sequence[Any]) -> list[Any]:
 def _factors(expression: Expr) -> list[Expr]:
     """Return the factors of a polynomial: ``[x, x + 1]`` for ``x**2 + x``.
 
-    The result is ``[expression]`` if the expression is not a product of several factors, or no polynomial.
+    The result is ``[expression]`` if the expression is not a product of different factors, or no polynomial.
     """
     plain = not expression.is_number and expression.is_polynomial(*expression.free_symbols)
     factors = [base for base, _ in factor_list(expression)[1]] if plain else []

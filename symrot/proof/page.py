@@ -48,7 +48,7 @@ class Step:
     hypotheses : tuple of Expr
         Expressions that are assumed to be zero.
     conditions : tuple
-        Denominators that must not vanish, radicands that must not be negative.
+        Conditions such as ``Ne(b, 0)``: denominators do not vanish, radicands are not negative.
     named : str
         LaTeX to display instead of the left side, if its formula is long; otherwise empty.
     display : Any
@@ -165,7 +165,7 @@ class Figure:
 
     @property
     def description(self) -> str:
-        """The caption as plain words without formulas, which screen readers speak in place of the drawing."""
+        """The caption without the marks of Markdown and LaTeX, which screen readers speak in place of the drawing."""
         return re.sub(r"[$`{}\\]", "", re.sub(r"\\[,;]|~", " ", self.caption)).replace("_", " ")
 
     def svg(self) -> str:

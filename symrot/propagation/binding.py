@@ -85,7 +85,7 @@ class Binding:
         if self._moving:
             constants = plan.start_constants
             for place, moving in self._moving:
-                # exact, then rounded once: to one double or, for closed forms, to two doubles with 32 digits
+                # exact, then rounded once: to one double or, for closed forms, to two doubles with 31 digits
                 numbers[place] = self._rounded(*moving.ratio(constants))
         return numbers
 
@@ -109,7 +109,7 @@ class _Moving:
 def _monomial(node: Node) -> tuple[int, int, str, int] | None:
     """Return a monomial in one name as (numerator, denominator, name, power): ``3*a**2/2`` gives ``(3, 2, "a", 2)``.
 
-    Return None for any other formula.
+    Return None for any other formula, and for products in which the name occurs twice, such as ``a*a``.
     """
     if node[0] == "symbol":
         return 1, 1, node[1], 1
@@ -127,7 +127,7 @@ def _monomial(node: Node) -> tuple[int, int, str, int] | None:
 
 
 def value_of(formula: Node, constants: Mapping[str, Fraction]) -> Fraction:
-    """Return the exact value of a formula that contains numbers and named constants only.
+    """Return the value of a formula that contains numbers and named constants only: exact, or of some 90 digits.
 
     Raises
     ------

@@ -172,13 +172,12 @@ def invariant_source(kernel: SceneKernel, states: Sequence[str]) -> str:
 def error_blocks(plan: Plan) -> tuple[list[int], list[float]]:
     """Return (edges, scales) of the blocks of states whose errors are measured separately.
 
-    For the blocks omega and quaternion: ``([0, 3, 7], [0.0, 1.0])``. The error of a block is divided by its scale, or
-    by the norm of the block if the scale is 0.
+    Block k has the states from edge k up to edge k + 1. Its error is divided by its scale, or by the norm of the block
+    if the scale is 0. For the blocks omega and quaternion: ``([0, 3, 7], [0.0, 1.0])``.
     """
     rates = sum(name.startswith("omega") for name in plan.states)
     count = len(plan.states)
     edges = [0, *([rates] if 0 < rates < count else []), count]
-    # block k has the states from edge k up to edge k + 1; its error is divided by its scale or, if 0, by its norm
     return edges, [RATE_SCALE] * (rates > 0) + [ATTITUDE_SCALE] * (count > rates)
 
 

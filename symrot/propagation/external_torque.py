@@ -387,7 +387,10 @@ class ExternallyDrivenMotion(RestartableMotion, SteppedInC):
         )  # fmt: skip
 
     def _guarded(self, low: float, high: float, run: Callable[[], Result]) -> Result:
-        """Return the result of ``run()``, after a check that the torque is defined from ``low`` to ``high``, s."""
+        """Return the result of ``run()``, after a check that the torque is defined from ``low`` to ``high``, s.
+
+        If the motion stops because the torque function raised an error, raise this error.
+        """
         source = self._shared.source
         source.check(min(low, self.start), max(high, self.start))
         try:
@@ -396,7 +399,6 @@ class ExternallyDrivenMotion(RestartableMotion, SteppedInC):
             failure = source.failure()
             if failure is None:
                 raise
-            # the exception of the torque function, which says more than the stepper's error
             raise failure from failure.__cause__
 
     def follow(self, times: Floats, in_order: bool = False) -> tuple[Floats, Stats]:

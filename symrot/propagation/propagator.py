@@ -137,7 +137,7 @@ class Propagator:
         return self._motion.kernel
 
     def prepare(self) -> None:
-        """Prepare the first call: derive the kernel and compile the closed form, if the motion has one."""
+        """Prepare the first call: derive the kernel, and compute the closed form if the motion has one."""
         self._motion.kernel  # noqa: B018
         if isinstance(self._motion, ClosedFormMotion):
             self._motion.exact  # noqa: B018

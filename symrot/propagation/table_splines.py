@@ -17,8 +17,8 @@ Floats = NDArray[np.float64]
 def table_splines(t: Floats, values: Floats, switching: Sequence[float]) -> list[Any]:
     """Return the cubic splines (SciPy) of a table, divided at each switching time, s, that has two samples.
 
-    ``t``: times of the samples, shape (n,); ``values``: the samples, shape (n, m). Raise InputError if there is only
-    one sample between two such times.
+    ``t``: times of the samples, shape (n,); ``values``: the samples, shape (n, m). Raise InputError if one of the
+    parts has only one sample.
     """
     from scipy.interpolate import CubicSpline
 

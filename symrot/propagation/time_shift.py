@@ -81,7 +81,8 @@ class ShiftedParameters:
     def parameters(self, epoch: float | Fraction) -> list[float]:
         """Return the values of all formulas for one value of the epoch, ``start`` + ``epoch``, s.
 
-        Each value is computed exactly and rounded once.
+        Each value is computed exactly, or to many more digits than a double has, and rounded once; it is NaN where the
+        formula has no real value. Raise IntegrationStopped if a value exceeds the range of doubles.
         """
         time = self._start + Fraction(epoch)
         top, bottom, values = time.numerator, time.denominator, {EPOCH: time}
@@ -93,7 +94,6 @@ class ShiftedParameters:
                 for node, line in zip(self._formulas, self._lines, strict=True)
             ]
         except OverflowError:
-            # a value exceeds the range of doubles
             raise IntegrationStopped(float(epoch), NOT_FINITE_SENTENCE) from None
 
 
@@ -109,7 +109,7 @@ def _line(node: Node) -> tuple[int, int, int] | None:
 
 
 def _coefficients(node: Node) -> tuple[Fraction, Fraction] | None:
-    """Return (a, b) of a formula that equals a + b*epoch: (2, 2) for ``2*(epoch + 1)``; None for any other formula."""
+    """Return (a, b) of a formula that is evidently a + b*epoch: (2, 2) for ``2*(epoch + 1)``; None for any other."""
     if node[0] == "number":
         return None if node[1] != node[1] else (Fraction(node[1]), Fraction(0))
     if node == ("symbol", EPOCH):

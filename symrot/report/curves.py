@@ -114,7 +114,7 @@ def hidden_parts(curves: Sequence[Floats], size: tuple[float, float], height: fl
 
 
 def _long_runs(mask: Mask, fraction: float) -> Mask:
-    """Return ``mask`` without short runs of True: those shorter than ``fraction`` of its length become False."""
+    """Return ``mask`` without short runs of True: single ones, and those shorter than ``fraction`` of its length."""
     steps = np.flatnonzero(np.diff(np.concatenate([[0], mask.astype(np.int8), [0]])))
     long = np.zeros(len(mask), dtype=bool)
     for start, stop in steps.reshape(-1, 2):
@@ -123,14 +123,13 @@ def _long_runs(mask: Mask, fraction: float) -> Mask:
 
 
 def _pieces(values: Floats, hidden: Mask) -> Iterator[tuple[Floats, bool]]:
-    """Yield the two parts of a curve, hidden and not hidden, the longer first, as pairs (values, whether it is hidden).
+    """Yield the hidden and the other part of a curve, the longer first, as pairs (values, whether the part is hidden).
 
-    Values outside the part are NaN.
+    ``hidden`` is True where the curve hides an earlier one. Values outside the part are NaN; an empty part is left out.
     """
     grown = hidden.copy()  # both parts share their end points, so that the curve has no gaps
     grown[1:] |= hidden[:-1]
     grown[:-1] |= hidden[1:]
-    # values are NaN outside the part; hidden is True where the curve hides an earlier one
     parts = [(np.where(grown, values, np.nan), True), (np.where(hidden, np.nan, values), False)]
     parts.sort(key=lambda part: -np.count_nonzero(np.isfinite(part[0])))
     return (part for part in parts if np.isfinite(part[0]).any())
@@ -161,7 +160,6 @@ def draw_curves(axes: Any, t: Floats, curves: Sequence[Floats], names: Sequence[
         if not np.isfinite(curve).any():
             axes.plot([], [], " ", label=name)
             continue
-        # where the curve would hide an earlier one
         dashes = (0, (DASH / width, (DASH + number) / width))
         label = name
         for part, is_hidden in _pieces(curve, parts[number]):

@@ -21,9 +21,7 @@ FREE = frozenset({"neg"})  # a minus sign counts as part of its addition or mult
 
 
 def _operations(structure: Structure) -> Counter[str]:
-    """Return how many operations of each kind one evaluation of the equations of motion needs, such as
-    ``{"mul": 12}``.
-    """
+    """Return how many operations of each kind one evaluation of the equations of motion needs: ``{"mul": 12, ..}``."""
     from symrot.codegen.scene_kernels import rates_program
     from symrot.dynamics.equations import equations_of_motion
 
@@ -56,7 +54,10 @@ def _ladder(plan: Plan) -> "list[PlanRow]":
 
 
 def _others(plan: Plan) -> "list[PlanRow]":
-    """Return the rows of the table of `symrot explain` that count no operations: states, method, outputs and cache."""
+    """Return the rows of the table of `symrot explain` that count no operations.
+
+    They are about states, method, samples and formulas of torques, outputs and cache.
+    """
     from symrot.build import cache as library
     from symrot.propagation.compiled_models import kernel_key
     from symrot.propagation.method import choose_method
@@ -195,7 +196,5 @@ def lines(report: "PlanReport") -> list[str]:
 
 
 def explanation(plan: Plan) -> str:
-    """Return the text that `symrot explain` prints: which parts of the motion are computed or skipped, and by which
-    rule.
-    """
+    """Return the text that `symrot explain` prints: what is computed or skipped, and by which rule."""
     return "\n".join(lines(facts(plan)))

@@ -42,9 +42,7 @@ def number_text(value: float | Fraction, digits: int = 6) -> str:
 
 
 def apart(*values: float) -> list[str]:
-    """Return numbers as texts with six digits, or with as many more as are needed to tell the two closest numbers
-    apart.
-    """
+    """Return numbers as texts with six digits, or with as many more, up to 17, as tell the two closest apart."""
     ordered = sorted({float(value) for value in values})
     nearest = min((after - before for before, after in pairwise(ordered)), default=math.inf)
     digits = 6
@@ -54,7 +52,7 @@ def apart(*values: float) -> list[str]:
 
 
 def exact(value: Fraction) -> str:
-    """Return a fraction as text: exact if that is short, such as ``"51/80"``, otherwise the nearest double."""
+    """Return a fraction as text: exact, such as ``"51/80"``, if its denominator is at most 10^12, else as a double."""
     return str(value) if value.denominator <= LONGEST_DENOMINATOR else repr(float(value))
 
 
@@ -121,8 +119,8 @@ def columns(
     rows : sequence of rows of text
         The first row may contain the titles of the columns.
     width : int, optional
-        Width of a line. Columns of text are wrapped to fit; a table of numbers that is too wide continues in a
-        second part below the first. Default: the width that :func:`room` returns.
+        Width of a line. Columns of text are wrapped to fit; a table of numbers that is too wide continues in further
+        parts below the first. Default: the width that :func:`room` returns.
     wrap : int
         Index of the column that is wrapped first; other columns are wrapped only if this is not enough.
     right : sequence of int
@@ -160,7 +158,7 @@ def _widths(rows: Sequence[Sequence[str]], width: int, wrap: int, right: Sequenc
     words = [max((len(word) for row in rows for word in row[i].split()), default=1) for i in range(count)]
     narrowest = [widths[i] if i in right else min(widths[i], words[i]) for i in range(count)]
     if sum(narrowest) + 2 * (count - 1) > width and len(right) > 1:
-        return widths  # too many numbers for one line: the table continues in a second part
+        return widths  # too many numbers for one line: the table continues in further parts
     while sum(widths) + 2 * (count - 1) > width:
         wide = [i for i in range(count) if i not in right and widths[i] > words[i]]
         if not wide:
@@ -174,7 +172,6 @@ def _parts(widths: Sequence[int], width: int, right: Sequence[int]) -> list[list
 
     Every part begins with column 0; ``right`` has the indices of right-aligned columns (numbers).
     """
-    # each part has the first column
     parts = [[0]]
     for i in range(1, len(widths)):
         full = sum(widths[j] + 2 for j in parts[-1]) + widths[i] > width

@@ -143,7 +143,7 @@ def save(trajectory: "Trajectory", path: str | Path, quantities: Sequence[str] |
     Raises
     ------
     InputError
-        If the file cannot be written, or if there is no quantity with one of the names.
+        If the file cannot be written, or if there is no quantity with one of the names, or it was not computed.
 
     Notes
     -----

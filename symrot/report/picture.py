@@ -32,7 +32,10 @@ PALETTE = 128  # colours: a few curves, their shades on white, greys
 
 
 def literal(text: str) -> str:
-    """Return text in which matplotlib sees no formula: dollar signs are escaped, since a formula begins at one."""
+    """Return text on one line, in which matplotlib sees no formula.
+
+    Dollar signs, at which formulas begin, are escaped, and backslashes become slashes.
+    """
     return one_line(text).replace("\\", "/").replace("$", r"\$")
 
 

@@ -46,8 +46,9 @@ def require_matplotlib(option: str = "--plot") -> None:
 
 
 def dense(trajectory: Any) -> Any:
-    """Return the motion at as many times as a smooth picture needs, or at its own samples if it has no dense
-    solution.
+    """Return the motion at as many times as a smooth picture needs.
+
+    A motion without dense solution, or with samples at a single time, is returned unchanged.
     """
     from symrot.propagation.trajectory import Trajectory
 
@@ -212,9 +213,7 @@ def _drift(axes: Any, t: Floats, trajectory: Any) -> None:
 
 
 def _body_sphere(axes: Any, trajectory: Any) -> None:
-    """Draw on a sphere, in body axes, the path of a free body's angular momentum, or of any other body's
-    rotation axis.
-    """
+    """Draw on a sphere, in body axes, the path of the angular momentum; under torques, that of the rotation axis."""
     if any(kind != "rotor" for kind in trajectory.scene.torque_kinds):
         draw_directions(axes, trajectory.omega, ("1", "2", "3"))
         axes.set_title("Axis of rotation in the body")
@@ -277,8 +276,8 @@ def plot(trajectory: "Trajectory", ax: Any = None, panel: str = "rates") -> Any:
     Raises
     ------
     InputError
-        If there is no such panel, matplotlib is not installed, the trajectory has no samples or no attitude to draw, or
-        the scene has no vertical and the panel needs one.
+        If there is no such panel, matplotlib is not installed, ``ax`` has three dimensions, ``trajectory`` is a whole
+        ensemble, has no samples or no attitude to draw, or the scene has no vertical and the panel needs one.
 
     Examples
     --------

@@ -15,14 +15,14 @@ PANELS = (
     ("motion", 1e-6, "µs of a call from Python for the motion"),
 )
 GENERAL, OWN, AUTO = COLOURS[1], COLOURS[0], COLOURS[6]
-LEAST = 0.6  # position on the logarithmic axis of a motion without any operation
+LEAST = 0.6  # smaller values, such as 0 operations, are drawn here on the logarithmic axis
 
 
 def figure(ladder: Mapping[str, Any]) -> Any:
     """Return a matplotlib Figure that compares kernels made for one scene with the general kernel: operations and time.
 
-    ``ladder`` holds the measurements, as :func:`symrot.bench.skip.measure` returns them; the figure has one row per
-    kernel.
+    ``ladder`` holds the measurements, as :func:`symrot.bench.skip.measure` returns them; the figure has one row for
+    each motion.
     """
     from matplotlib.figure import Figure
     from matplotlib.lines import Line2D

@@ -48,7 +48,7 @@ class Window:
 
     @property
     def spacing(self) -> float:
-        """Degrees between circles of latitude: the widest spacing in GRIDS that fits four times into the window."""
+        """Degrees between circles of latitude: the widest of GRIDS that fits four times into the window, or 5."""
         across = 2.0 * np.degrees(np.arcsin(min(self.half, 1.0)))
         return next((step for step in GRIDS if step * 4.0 <= across), GRIDS[-1])
 
@@ -151,8 +151,9 @@ def _globe(axes: Any, view: Floats, labels: tuple[str, ...], window: Window, fon
 
 
 def _levels(axes: Any, view: Floats, value: Callable[[Floats], Floats], window: Window) -> bool:
-    """Draw level curves of ``value``, a function of direction, on the near side of the sphere; return False if it is
-    constant.
+    """Draw level curves of ``value``, a function of direction, on the near side of the sphere.
+
+    Return whether there are such curves: False if the function is constant up to rounding errors.
     """
     line = min(window.half, 1.0) * np.linspace(-1.0, 1.0, FINEST)
     x, y = np.meshgrid(window.centre[0] + line, window.centre[1] + line)
@@ -173,13 +174,13 @@ def _path(
 ) -> None:
     """Draw a path through points of the drawing, shape (n, 2), coloured from dark at its start to light at its end.
 
-    The path is interrupted after points where ``gaps`` is true, and paler where ``front`` is false.
+    The path is interrupted after points where ``gaps`` is true, and paler where ``front`` is false. With many gaps,
+    only its points are drawn.
     """
     from matplotlib import colormaps
     from matplotlib.collections import LineCollection
 
     count = len(points)
-    # points on the near side of the sphere
     near = np.ones(count, dtype=bool) if front is None else front
     shades = np.arange(count) * SHADES // max(count, 1)
     changes = (np.diff(shades) != 0) | (np.diff(near.astype(np.int8)) != 0) | gaps[:-1]
@@ -188,7 +189,6 @@ def _path(
     strong = colours[:, :3].copy()
     colours[~near, :3] = 1.0 - BACK_PATH * (1.0 - colours[~near, :3])  # opaque, since pieces of a line overlap
     many = count > MOST_VECTORS
-    # too many points too far from the next one: only the points are drawn
     if np.mean(gaps) < MOST_GAPS:
         stops = np.append(starts[1:], count)
         ends = np.where(gaps[stops - 1], stops, stops + 1)  # a piece reaches the first point of the next one
@@ -244,6 +244,8 @@ def draw_directions(
 ) -> None:
     """Draw the path of the direction of vectors, shape (n, 3), on a sphere.
 
+    A tiny path is drawn on a plane that touches the sphere, without level curves.
+
     Parameters
     ----------
     axes : matplotlib Axes
@@ -266,7 +268,6 @@ def draw_directions(
         middle = middle / length
         extent = float(np.max(np.linalg.norm(directions - middle, axis=1)))
         if STILL < extent < SMALL:
-            # a tiny path, on the plane that touches the sphere
             _plane(axes, directions, middle, extent, labels)
             return
     view, window = _close_view(directions) or (_eye(directions), Window())

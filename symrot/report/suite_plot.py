@@ -16,9 +16,7 @@ PEERS = ("heyoka", "heyoka, best setting", "SciPy LSODA", "SciPy DOP853", "SciPy
 
 
 def figure(suite: Mapping[str, Any]) -> Any:
-    """Return a matplotlib Figure of other programs' times divided by symrot's times at equal error, a row for each
-    motion.
-    """
+    """Return a matplotlib Figure of other programs' times relative to symrot's at equal error, one row per motion."""
     from matplotlib.figure import Figure
 
     studies = list(suite["studies"].values())

@@ -159,12 +159,15 @@ def _settings(report: "RunReport") -> list[tuple[str, str]]:
 
 
 def _switches(times: list[float], switchings: "list[SwitchingRecord]", start: str, stop: str) -> list[tuple[str, str]]:
-    """Return a row (label, text) for each function with jumps or kinks: the times at which it switched."""
-    # the motion crosses the jump, begins to slide along it, or leaves it
+    """Return rows (label, text) for functions with jumps or kinks: the times at which each switched.
+
+    At most SWITCHES_SHOWN functions and times are listed, with the total numbers if there are more. Times of a table of
+    samples are listed if no function switched.
+    """
     by_function: dict[str, list[tuple[float, str]]] = {}
     for item in switchings:
         by_function.setdefault(f"{one_line(item['function'])} ", []).append((item["t"], HOW[item["how"]]))
-    if times and not by_function:  # these are the jump times of a table of samples
+    if times and not by_function:
         by_function[""] = [(t, "") for t in times]
     listed = dict(list(by_function.items())[:SWITCHES_SHOWN])
     seen = [t for own in listed.values() for t, _ in own[:SWITCHES_SHOWN]]

@@ -30,6 +30,8 @@ def check(
 ) -> list[Verdict]:
     """Check a claim (an equation as text or LaTeX), or all claims of a file, and return the verdicts.
 
+    ``stated`` is the context of a claim, as further keyword arguments of :func:`symrot.check`.
+
     Raises
     ------
     InputError
@@ -68,9 +70,10 @@ SIGNS = "=≈≃≤≥⩽⩾<>≠"
 
 
 def _is_file(source: str) -> bool:
-    """Return whether ``source``, the argument of `symrot check`, is a file's path and not a claim.
+    """Return whether ``source``, the argument of `symrot check`, is taken as the path of a file and not as a claim.
 
-    A claim contains a relation such as ``==``.
+    Text with one of the SIGNS, or with a backslash and without the ending .toml, is a claim, unless it is the path of
+    an existing .toml file and has no ``==``.
     """
     is_text = any(sign in source for sign in SIGNS) or ("\\" in source and not source.endswith(".toml"))
     return not is_text or (source.endswith(".toml") and "==" not in source and Path(source).is_file())

@@ -51,7 +51,6 @@ def vertical_angles(trajectory: Any) -> VerticalAngles:
     """
     torque = next(item for item in trajectory.scene.torques if item.kind in ("gravity", "gravity_gradient"))
     if torque.kind == "gravity":
-        # from the fixed point to the centre of mass
         line = trajectory.dcm @ _unit([float(value) for value in torque.vector("center_of_mass")])
         up = -_unit([float(value) for value in torque.vector("direction")])
         angle = _angle(line, np.broadcast_to(up, line.shape))

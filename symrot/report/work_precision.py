@@ -35,7 +35,7 @@ def _decades(study: Mapping[str, Any]) -> list[str]:
 
 
 def _short(value: float) -> str:
-    """Return a number as text of at most five characters: 1.234 -> "1.23"; "-" for an infinite number or NaN."""
+    """Return a positive number as short text, about five characters: 1.234 -> "1.23"; "-" if infinite or NaN."""
     if not math.isfinite(value):
         return "-"
     if value >= 1e5:
@@ -106,7 +106,7 @@ def read_study(path: Path) -> dict[str, Any]:
     Raises
     ------
     InputError
-        If the file is not a study.
+        If the file cannot be read, or is not a study.
     """
     label = repr(str(path))
     try:

@@ -16,7 +16,7 @@ from symrot.report.picture import GREY, draw, literal
 
 __all__ = ["LOOKS", "METHOD_LABELS", "OTHER", "OUTERMOST", "figure", "frontier", "save"]
 
-LEAST_ERROR = 1e-17  # an error of zero is drawn as this error
+LEAST_ERROR = 1e-17  # smaller errors, such as zero, are drawn as this error
 APART = 0.042  # least distance between two names, relative to the panel's height
 OUTERMOST = 1.5  # runs with larger errors are not shown
 
@@ -56,7 +56,10 @@ METHOD_LABELS = {
 
 
 def frontier(runs: Sequence[Mapping[str, Any]]) -> tuple[list[tuple[float, float]], list[tuple[float, float]]]:
-    """Split the runs of a method into two lists of points (error, time): its curve, and the other runs."""
+    """Split the runs of a method into two lists of points (error, time): its curve, and the other runs.
+
+    Both are in the order of increasing errors; runs with errors from OUTERMOST are left out.
+    """
     points = sorted((max(float(run["error"]), LEAST_ERROR), float(run["seconds"])) for run in runs)
     points = [point for point in points if point[0] < OUTERMOST]
     # the curve: no other run is both faster and more accurate

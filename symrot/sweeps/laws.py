@@ -164,7 +164,11 @@ def _grid(name: str, numbers: tuple[float, ...], law: str, where: str) -> Grid:
     if len(numbers) != 3 or numbers[2] != int(numbers[2]) or not 1 <= numbers[2] <= MOST_GRID_VALUES:
         raise InputError(f"{expected}, got {show(law)}")
     first, last, count = numbers[0], numbers[1], int(numbers[2])
-    if name == "geomspace" and not first * last > 0:
+    if name == "geomspace" and not (min(first, last) > 0 or max(first, last) < 0):
         raise InputError(f"{where}: expected {GRIDS[name]}, with first and last of the same sign, got {show(law)}")
     space = np.linspace if name == "linspace" else np.geomspace
-    return Grid(tuple(space(first, last, count).tolist()))
+    with np.errstate(over="ignore", invalid="ignore"):
+        values = space(first, last, count)
+    if not np.isfinite(values).all():
+        raise InputError(f"{where}: expected {GRIDS[name]} with a range within that of a double, got {show(law)}")
+    return Grid(tuple(values.tolist()))

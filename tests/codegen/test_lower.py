@@ -1,5 +1,7 @@
 """Lowering costs no operation that a special case does not need."""
 
+from fractions import Fraction
+
 import sympy
 
 from symrot.bench.skip import general_plan, rungs
@@ -19,6 +21,17 @@ def test_constants_of_nested_sums_meet_in_one():
     lowered = lower(Signature("f", (given, out)), [("x", nested)])
     assert lowered.program.operations() == {"mul": 4, "add": 2}
     assert len(lowered.parameters) == 3
+
+
+def test_a_sum_that_contains_a_shared_sum_twice_keeps_both():
+    """``k (a + b) + k a + k b + k c`` is twice ``k (a + b)`` plus ``k c``, also if ``a + b + c`` is shared."""
+    a, b, c, k = (sympy.Symbol(s, real=True) for s in "abck")
+    given = Argument("v", "in", (("a", "1", ""), ("b", "1", ""), ("c", "1", "")))
+    out = Argument("out", "out", (("x", "1", ""), ("y", "1", "")))
+    outputs = [("x", k * (a + b) + k * a + k * b + k * c), ("y", a + b + c)]
+    lowered = lower(Signature("f", (given, out)), outputs)
+    values = {"a": Fraction(2), "b": Fraction(3), "c": Fraction(5), "p0": Fraction(7)}
+    assert lowered.program.evaluate(values) == {"x": 7 * 15, "y": 10}
 
 
 def test_a_special_case_takes_no_more_operations():

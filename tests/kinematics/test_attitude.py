@@ -27,7 +27,7 @@ from symrot import symbols as sym
 from symrot.conventions import EXTRINSIC_SEQUENCES, INTRINSIC_SEQUENCES, SEQUENCES
 from symrot.errors import InputError
 from symrot.exact import normal_form
-from symrot.kinematics import euler, quaternion, rotations
+from symrot.kinematics import euler, quaternion, rotation_vector, rotations
 from symrot.kinematics.euler import dcm, rate_jacobian
 
 phi, theta, psi = sym.angles
@@ -303,6 +303,15 @@ def test_angles_come_back_from_quaternion_and_dcm(sequence):
                 for back, angle in zip(found, given, strict=True):
                     assert abs(mp.sin((back.evalf(50) - angle) / 2)) < mp.mpf(10) ** -40
                 assert abs(found[1].evalf(50) - given[1]) < mp.mpf(10) ** -40  # in its range
+
+
+@pytest.mark.parametrize("frame", ["body", "space"])
+def test_the_zero_rotation_vector_is_the_identity(frame):
+    """The formulas divide by the length of the vector; at zero their limit counts."""
+    assert rotation_vector.dcm((0, 0, 0)) == eye(3)
+    assert list(rotation_vector.quaternion_of_rotation_vector((0, 0, 0))) == [1, 0, 0, 0]
+    jacobian = rotation_vector.jacobian(frame, (0, 0, 0))
+    assert jacobian == jacobian.inverse == eye(3) and jacobian.determinant == 1
 
 
 # Bad input

@@ -191,6 +191,8 @@ def test_mathml_of_the_pages_own_latex():
     assert mathml(r"\operatorname{cn}\operatorname{dn}").count("<mspace") == 1
     assert "<mspace" not in mathml(r"(\tanh, \operatorname{sn}) = 0")
     assert '<mo form="prefix">−</mo>' in mathml("-x") and "<mo>−</mo>" in mathml("x - y")
+    for letter, character in {"a": "𝒶", "e": "ℯ", "g": "ℊ", "o": "ℴ", "R": "ℛ", "1": "1"}.items():
+        assert f">{character}</mi>" in mathml(rf"\mathcal{{{letter}}}")
 
 
 @pytest.mark.parametrize(

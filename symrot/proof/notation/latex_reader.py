@@ -326,7 +326,10 @@ def _text(node: Node) -> str:
 
 
 def _after(node: Node, mark: str) -> Row | None:
-    """Return the items after ``mark`` in a group, such as ``x`` in ``{d x}`` after ``d``; None without the mark."""
+    """Return the items of a group that begins with ``mark``, without the mark: ``x`` for ``{d x}`` and the mark ``d``.
+
+    Return None for any other group.
+    """
     row = node if isinstance(node, Row) else Row((node,), node.start, node.start)
     return Row(row.items[1:], row.start, row.end) if row.items and row.items[0].text == mark else None
 

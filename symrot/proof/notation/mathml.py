@@ -130,7 +130,7 @@ class _Translation:
     def item(self, node: Node, after_operand: bool = False) -> Item:
         """Return one node of parsed LaTeX as an :class:`Item`, with its MathML, width and kind.
 
-        With ``after_operand``, a minus sign is binary, not a prefix.
+        With ``after_operand``, a sign such as - is binary, not a prefix.
         """
         if not isinstance(node, Token):
             return self.scripted(node, after_operand) if isinstance(node, Scripts) else ITEMS[type(node)](self, node)
@@ -138,7 +138,7 @@ class _Translation:
         if node.kind == "sized" and text in FENCES:
             return Item(f'<mo stretchy="true" minsize="1.6em">{FENCES[text]}</mo>', 0.5)
         sign = SIGNS.get(text)
-        if sign and not after_operand:  # an operand is to the left of a binary sign
+        if sign and not after_operand:
             return Item(f'<mo form="prefix">{sign}</mo>', 0.7)
         if text in TOKENS:
             return TOKENS[text]
@@ -239,6 +239,7 @@ def _letter(letter: str, variant: str) -> str:
         return letter
     if variant == "script":
         special = {"B": "ℬ", "E": "ℰ", "F": "ℱ", "H": "ℋ", "I": "ℐ", "L": "ℒ", "M": "ℳ", "R": "ℛ"}
+        special |= {"e": "ℯ", "g": "ℊ", "o": "ℴ", **{digit: digit for digit in digits}}  # there are no script digits
         return special.get(letter) or chr((0x1D49C if letter.isupper() else 0x1D4B6) + ord(letter.upper()) - ord("A"))
     starts = {"bold": (0x1D400, 0x1D41A, 0x1D7CE), "sans-serif": (0x1D5A0, 0x1D5BA, 0x1D7E2)}.get(variant)
     if starts is None:

@@ -70,13 +70,15 @@ class PagePrinter(LatexPrinter):  # type: ignore[misc]
 
 
 def _common_scale(matrix: MatrixBase) -> Any:
-    """Return 1/D if all nonzero entries of a matrix have the same denominator D; otherwise return 1."""
+    """Return 1/D if all nonzero entries of a matrix have the same denominator D; otherwise return 1.
+
+    Return 1 also for a matrix with a single entry, and if an entry times D still contains a fraction.
+    """
     denominators = {entry.as_numer_denom()[1] for entry in matrix if entry != 0}
     if len(denominators) != 1 or len(matrix) < 2:
         return 1
     (denominator,) = denominators
     scale = 1 / denominator
-    # no entry has a fraction in its numerator or denominator
     clean = not any(
         part.is_Pow and part.exp.is_negative for entry in matrix for part in preorder_traversal(entry / scale)
     )

@@ -168,7 +168,8 @@ def _mentions(page: Page, pages: Sequence[Page]) -> Iterator[str]:
 def _words(page: Page) -> Iterator[tuple[str, str, str]]:
     """Yield (anchor, title, text) for each text on a page that the book's search finds.
 
-    An anchor, such as ``"#step-3"``, is empty for the top of the page; titles and texts are Markdown.
+    An anchor is such as ``"#step-3"``; if it is empty, the link leads to the top of the page. Titles and texts are
+    Markdown.
     """
     yield "", page.title, page.about
     for opening in page.opening:

@@ -185,7 +185,10 @@ ESCAPES = {
 
 
 def _prose(text: str) -> str:
-    """Return Markdown prose as LaTeX: formulas in ``$`` stay as they are; code, links and emphasis are translated."""
+    """Return Markdown prose as LaTeX: code, links and emphasis are translated.
+
+    Formulas in ``$`` stay as they are; those longer than LONGEST_INLINE letters are displayed on lines of their own.
+    """
     text = re.sub(r"`[^`]+`|\*\*(.+?)\*\*", lambda m: m[0] if m[1] is None else f"\1{m[1]}\2", text)
     pieces = re.split(r"(\$[^$]+\$[.,;]?|`[^`]+`|\[[^\]]+\]\([^)]+\.md\))", text)
     return "".join(_piece(piece) for piece in pieces).replace("\1", r"\textbf{").replace("\2", "}")

@@ -30,8 +30,7 @@ def repetitions(page: Page) -> frozenset[int]:
     """
     places: dict[tuple[str, str], list[int]] = {}
     for number, step in enumerate(page.steps, page.first):
-        # A page may prove one result for many sequences of angles, or many solids. Claims are compared without formulas
-        # and names of sequences such as ZXZ.
+        # a page may prove one result for many sequences of angles, or many solids
         claim = re.sub(r"\$[^$]*\$|\b[XYZ]{3}\b", "", step.claim)
         places.setdefault((claim, step.reason), []).append(number)
     # the page does not print the reason of these steps
@@ -67,7 +66,7 @@ def _list(formulas: Iterable[str]) -> str:
 
 
 def units(page: Page) -> str:
-    """Return a sentence with the unit of every symbol on the page, or an empty text if no symbol has a known unit."""
+    """Return the units of the symbols in the steps and equations of a page as one text; empty if none are known."""
     sides: list[Any] = [side for step in page.steps for side in (step.left, step.right)]
     passages = (item for item in page.items if isinstance(item, Passage))
     sides += [side for passage in passages for pair in passage.equations for side in pair]

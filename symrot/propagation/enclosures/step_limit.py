@@ -100,8 +100,6 @@ def _sqrt(a: Disc, whole: float) -> Disc:
     root = math.sqrt(max(a.centre, 0.0))
     if a.centre > a.radius:
         return Disc(root, a.radius / (root + math.sqrt(a.centre - a.radius)))
-    # At zero the root has no Taylor series, and a step may overlook all of it. The step limit counts the missed share
-    # of this radius as overlooked: the factor makes that the whole root.
     return Disc(root, whole * (root + math.sqrt(abs(a.centre) + a.radius)))
 
 
@@ -297,8 +295,9 @@ def longest_followed(
 ) -> float:
     """Return the length of a step, at most h, for which the error from a missed change of the torque is proven small.
 
-    This error is at most ``allowed``. The result is h if that is proven for h; otherwise it is usually close to the
-    longest length for which it is proven. A result of 1e-300 s or less means that nothing was proven.
+    This error is at most ``allowed``. The result has the sign of h. It is h if that is proven for h; otherwise it is
+    usually close to the longest length for which it is proven. An absolute value of 1e-300 s or less means that nothing
+    was proven.
 
     Parameters
     ----------

@@ -54,7 +54,8 @@ class EventResult(NamedTuple):
     events : tuple of Event
         The events, in the order in which they were requested.
     warnings : tuple of str
-        A sentence for each event whose formula comes nearer to zero than the error of the motion.
+        A sentence for each event whose formula comes nearer to zero than the error of the motion, or is zero for a
+        while.
     error : PropagationError or None
         The error that ended the motion or the search early; samples and events end at its time.
     """
@@ -169,7 +170,6 @@ def _searched(
     path: Path, events: Sequence[Event], p: Sequence[float], side: "_Side", start: float, end: float, accuracy: float
 ) -> tuple[SearchResult, IntegrationStopped | ZerosNotSeparated | None]:
     """Return the events after or before a motion's start, and the error that ended the search early or None."""
-    # a side is the interval before or after the start
     if end == start:
         return SearchResult([], None, []), None
 

@@ -53,7 +53,7 @@ def _library_source(
 
 
 def _with_pi(node: Node) -> Node:
-    """Return the formula in which the name pi is replaced by its value to 33 digits."""
+    """Return the formula in which the name pi is replaced by its value, a fraction right to 96 digits."""
     if node[0] == "symbol":
         return ("number", number.PI) if node[1] == "pi" else node
     if node[0] == "call":

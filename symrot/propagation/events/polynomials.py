@@ -1,9 +1,9 @@
 """Motions by any method as piecewise polynomials in time, for the search for events.
 
 A *row* is an array with the polynomials of all states in one step, in powers of ``(time - t)/unit``. It begins with
-four numbers: t and h, the start and the length of the step, the digits of the start that do not fit into t, and the
-unit, a time. Then follow coefficient 0 of all states, coefficient 1 of all states, and so on. An *edge* is the time at
-which two rows meet.
+four numbers: t, the start of the step (in a fitted row its middle), the length of the step, the digits of the time that
+do not fit into t, and the unit, a time. Then follow coefficient 0 of all states, coefficient 1 of all states, and so
+on. An *edge* is the time at which two rows meet.
 """
 
 import math
@@ -29,7 +29,7 @@ EPS = float(np.finfo(float).eps)
 NOISE = 16.0  # units in the last place: assumed error of a motion's samples
 ROUGH = 1e-9  # relative: a fit that is off by more does not follow the motion
 SURE, HALVINGS = 6, 40  # halvings of a piece: after SURE of them accuracy ROUGH is enough; HALVINGS is the limit
-MOST_PIECES = 20_000  # pieces that one call may add by cutting the motion
+MOST_PIECES = 20_000  # halves of pieces that one call may make by cutting the motion
 FEWEST, MOST = 16, 1024  # pieces fitted at a time
 
 
@@ -138,7 +138,8 @@ def fitted(
     blocks, scales
         Edges and scales of the blocks of states, as for :func:`symrot.propagation.steppers.dop853.translation_unit`.
     depth, left : int, list of int
-        For recursive calls: number of halvings so far, and number of pieces that may still be added.
+        For recursive calls: number of halvings so far, and, in a list that is counted down, how many halves of pieces
+        may still be made.
     accuracy : float
         Error of the motion itself, relative to the largest values of the states between the edges. Where the steps of
         the motion do not join exactly, no fit can be closer. Recursive calls pass one error per state.

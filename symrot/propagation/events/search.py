@@ -76,8 +76,8 @@ class _Search:
     def entries(self, piece: Piece) -> tuple[list[list[float]], ZerosNotSeparated | None]:
         """Return the intervals in ``piece``, a part of the motion, that may contain zeros, and an error or None.
 
-        An interval is [event, start, end, sign before, sign after]. If the limit of operations is exceeded, the
-        intervals reach only to the time of the error.
+        An interval is [event, start, end, sign before, sign after]. If the limit of operations or intervals is
+        exceeded, the intervals reach only to the time of the error.
         """
         edges, rows = np.ascontiguousarray(piece.edges), np.ascontiguousarray(piece.rows)
         count, listed, answer = len(rows), [], (ctypes.c_int64 * 3)()
@@ -101,9 +101,7 @@ class _Search:
                 t = float(edges[min(answer[2], count)])
                 effort = f"{self.spent:.1g} operations and {len(listed)} entries"
                 side = 1.0 if edges[-1] >= edges[0] else -1.0
-                # not raised: the intervals cover the piece up to the time of the error
                 known = [entry[:5] for entry in listed if side * (entry[2] - t) <= 0.0 and not entry[5]]
-                # the limit of operations is exceeded
                 return known, ZerosNotSeparated(t, self.formulas, effort)
         # an extremum nearer to zero than the motion's error gives no interval
         self.doubts += [(int(entry[0]), entry[1]) for entry in listed if entry[5]]
@@ -143,7 +141,7 @@ class SearchResult(NamedTuple):
     zeros : list of EventZero
         The zeros, in the order of the motion.
     stop : float or None
-        Time of the terminal event, s.
+        Time of the terminal event, s; None if the motion did not reach one.
     doubts : list of (int, float)
         Index of the event and time, s, for each extremum whose distance from zero is less than the error of the motion:
         whether the formula touches zero there, crosses it twice or misses it is not known.

@@ -74,6 +74,5 @@ def with_full_state(plan: Plan, form: ClosedForm) -> Plan:
             rows.append(row)
         before = row.structure.reductions
     why = f"the motion has a closed form: {form.name}"
-    # the last row of the plan names the closed form as the reason
     rows.append(RuleOutcome(structure, True, why, form.derivation, "stepping"))
     return replace(plan, structure=structure, rows=tuple(rows))

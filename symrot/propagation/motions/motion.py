@@ -142,7 +142,6 @@ class Motion(ABC):
 
     def integrate(self, times: Floats, in_order: bool = False) -> tuple[Floats, Stats]:
         """Return the N states at n times of the scene, s, in one array, shape (n, N), and the cost of the motion."""
-        # a closed form has separate arrays for angular velocity and attitude
         states, stats = self.follow(times, in_order)
         return np.concatenate(states, axis=1) if isinstance(states, tuple) else states, stats
 
@@ -237,7 +236,6 @@ class ShiftableMotion(RestartableMotion):
 
 def on_clock(motion: Motion, times: Floats) -> Motion:
     """Return the motion with time counted from 0 or from its start, whichever lets ``times``, s, keep more digits."""
-    # its own clock, or one that shows 0 at the start
     return motion.on_own_clock if isinstance(motion, ShiftableMotion) and motion._shifts(times) else motion
 
 

@@ -39,7 +39,8 @@ def event_time_slopes(
     event : Event
         The event.
     kinds : k texts
-        The kind of each zero. A zero at which the formula touches zero has no derivative: its row is NaN.
+        The kind of each zero. A zero at which the formula touches zero, or has a rate of zero, has no derivative: its
+        row is NaN.
     times : array, shape (k,)
         The times of the event, s.
     states, rates : arrays, shape (k, 7)

@@ -61,7 +61,6 @@ def rates_of(plan: Plan) -> tuple[Program, Parameters]:
         library.store(key, saved)
     record = json.loads(saved)
     formulas = tuple((name, node_from_json(node)) for name, node in record["parameters"])
-    # parameters: pairs of name and formula in the constants of the scene
     return Program.from_json(record["rates"]), formulas
 
 

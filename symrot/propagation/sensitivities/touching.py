@@ -16,8 +16,10 @@ from symrot.propagation.sensitivities.sliding import rests
 __all__ = ["refuse_touching"]
 
 Floats = NDArray[np.float64]
-GRAZE = 1e-9  # smallest distance of a guard from zero, relative to the largest in an interval, that does not touch zero
-NEARBY = 0.1  # part of the largest distance, below which a smallest distance is examined
+GRAZE = (
+    1e-9  # a guard touches zero if its smallest distance from zero in an interval is at most this part of the largest
+)
+NEARBY = 0.1  # a smallest distance is examined if it is at most this part of the largest
 FINE, ZOOMS = 8, 12  # points in a step of a motion, and the number of times that the points are refined
 
 

@@ -36,7 +36,7 @@ NO_TABLES = ("schema", "title", "source", "span", "output", "accuracy")
 STEP = Fraction(1, 1 << 80)
 AGREEMENT = Fraction(1, 1 << 60)
 FALL = Fraction(9, 10)  # largest ratio of quotients of one and two steps whose limit is zero
-BEND = Fraction(21, 10)  # second differences of two steps and of one: 4 where a number is smooth, 2 at a kink
+BEND = Fraction(21, 10)  # ratio of second differences of two steps and of one: 4 where a number is smooth, 2 at a kink
 ROUNDED = Fraction(1, 1 << 150)  # a smaller second difference, in units of the number, may be a rounding error
 UNITS = {
     **dict.fromkeys(RATES, "rad/s"),
@@ -70,8 +70,8 @@ class Variable:
     Attributes
     ----------
     key, name, unit : str
-        The requested name, such as ``"omega"``; the name of this component, such as ``"omega_2"``; its SI unit, or an
-        empty text if no table states one.
+        The requested name, such as ``"omega"``; the name of this component, such as ``"omega_2"``; its unit (SI, or
+        ``"deg"`` for an angle that the scene gives in degrees), or an empty text if no table states one.
     value : Fraction
         Its present value.
     moved : function
@@ -94,7 +94,7 @@ class Variable:
 
 
 def require_formulas(scene: Scene) -> None:
-    """Raise InputError if a torque of a scene is given by samples, which have no derivatives."""
+    """Raise InputError if a torque of a scene is given by samples, for callers that need formulas."""
     if scene.table is not None:
         raise InputError(
             f"{scene.name}: expected torques with formulas, which sensitivities need, got a torque of kind table"
@@ -115,7 +115,8 @@ def read_variables(scene: Scene, keys: Sequence[str]) -> list[Variable]:
     Raises
     ------
     InputError
-        If a key names no initial value or constant, or is named twice; if there is no key, or more than 100 variables.
+        If a key names no initial value or constant, or a variable is named twice; if there is no key, or more than 100
+        variables.
     """
     if isinstance(keys, str) or not isinstance(keys, Sequence) or not all(isinstance(key, str) for key in keys):
         raise InputError(f'sensitivities: expected a list of names such as ["omega", "weight"], got {show(keys)}')
@@ -178,7 +179,10 @@ def _number(key: str, value: Any) -> Fraction:
 
 
 def _unit(scene: Scene, key: str) -> str:
-    """Return the SI unit of a key of :meth:`symrot.Scene.with_`: ``"kg"`` for ``"body.mass"``; empty if unknown."""
+    """Return the unit of a key of :meth:`symrot.Scene.with_`: ``"kg"`` for ``"body.mass"``; empty if unknown.
+
+    It is the SI unit or, for an angle that the scene gives in degrees, ``"deg"``.
+    """
     last = re.sub(r"(\[\d+\])+$", "", key.rpartition(".")[2])
     if last in UNITS:
         return UNITS[last]
@@ -218,7 +222,7 @@ def difference(scene: Scene, variable: Variable, numbers: Callable[[Scene], Numb
     Raises
     ------
     InputError
-        If the scene is not valid on either side of the variable's value, or if a number is not smooth there.
+        If the scene is valid on neither side of the variable's value, or if a number is not smooth there.
     """
     moved = variable.moved
     assert moved is not None

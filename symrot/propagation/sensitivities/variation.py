@@ -53,7 +53,7 @@ __all__ = [
 
 Floats = NDArray[np.float64]
 AT_ONCE = 6  # columns in one library: many more would take a compiler too long
-SMALL = 2.0**-6  # largest size of a column below which it is integrated again in smaller units
+SMALL = 2.0**-6  # a column that stays below this size is multiplied by a larger unit and integrated again
 TRIES = 4
 
 

@@ -32,7 +32,7 @@ class IntegrationStopped(PropagationError):
         return IntegrationStopped, (self.t, self.reason, self.stop)
 
     def later(self, epoch: float) -> "IntegrationStopped":
-        """Return the error with its times converted to scene times, by adding ``epoch``, s."""
+        """Return the error with its times converted to scene times, by adding ``epoch``, s; without ``recording``."""
         later = IntegrationStopped(self.t + epoch, self.reason, None if self.stop is None else self.stop + epoch)
         if self.samples is not None:
             later.samples = self.samples._replace(stats=self.samples.stats.later(epoch))
@@ -60,7 +60,7 @@ class Samples(NamedTuple):
 def add_samples(error: BaseException, numbers: NDArray[np.intp], states: Floats, stats: Stats) -> None:
     """Store the samples computed before an error, with their indices and cost, as ``samples`` of the exception.
 
-    If the exception already has samples, these follow the new ones, and ``stats`` replaces their cost.
+    If the exception already has samples, the new samples are put before them, and ``stats`` replaces their cost.
     """
     before: Samples | None = getattr(error, "samples", None)
     if before is not None:  # samples on the other side of the start were finished before

@@ -27,9 +27,9 @@ class Recording(ABC):
 
     @abstractmethod
     def _fill(self, times: Floats, states: Floats) -> None:
-        """Write the states at ``times``, which lie inside the span and differ from t0, into the array ``states``.
+        """Write the states at ``times``, shape (n,), inside the span into the array ``states``, shape (n, N).
 
-        The shapes are (n,) and (n, N).
+        At t0 it may write anything: the caller inserts the initial state there.
         """
 
     def __call__(self, t: ArrayLike) -> Floats:

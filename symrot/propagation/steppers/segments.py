@@ -65,7 +65,7 @@ def split_at(times: Floats, t0: float) -> Iterator[NDArray[np.intp]]:
 
     An empty array is left out.
     """
-    # for the times 3, 0, 2 and t0 = 1: [2, 0], then [1]; an empty array is left out
+    # for the times 3, 0, 2 and t0 = 1: [2, 0], then [1]
     order = np.argsort(times, kind="stable")
     first_after = int(np.searchsorted(times[order], t0))
     for part in (order[first_after:], order[:first_after][::-1]):

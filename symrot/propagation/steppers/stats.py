@@ -64,7 +64,10 @@ class Stats(NamedTuple):
     rounded_beyond: tuple[float, ...] = ()
 
     def later(self, epoch: float) -> "Stats":
-        """Return the statistics of an integration with its times converted to scene times, by adding ``epoch``, s."""
+        """Return the statistics of an integration with :attr:`rounded_beyond` converted to scene times.
+
+        ``epoch``, s, is added to these times. An integration has no switching times.
+        """
         return self._replace(rounded_beyond=tuple([t + epoch for t in self.rounded_beyond]))
 
 

@@ -330,7 +330,10 @@ class ModeChanges(Guards):
         return any(signs[n] for n in numbers)
 
     def _settle(self, regime: Regime, active: list[bool], piece: Piece, states: Callable[[Floats], Floats]) -> bool:
-        """Set each function such as sign(x) to its value at zero if x stays zero; return whether a value changed."""
+        """Set each function such as sign(x) to its value at zero if x stays zero; return whether a value changed.
+
+        A sign(x) with the value 0 gets the sign of x if x leaves zero.
+        """
         formulas, settled = [guard.formula for guard in regime.guards], dict(self.modes)
 
         def signs_under(modes: Modes) -> list[int]:
@@ -353,7 +356,6 @@ class ModeChanges(Guards):
                     settled[mode] = self.modes[mode] + 1
                 continue
             if sign and self.modes[mode] == 0:
-                # a sign that was set to 0 gets the sign of x as soon as x is not zero
                 settled[mode] = sign
             # zero at the start and at the end of piece, the next interval of the motion
             elif not sign and self._guard_value(mode) == 0.0 == self._guard_value(mode, later):

@@ -115,7 +115,10 @@ def _switchings(changes: dict[tuple[float, str], str]) -> list[Switching]:
 
 
 class SwitchedRecording(Recording):
-    """A function from times to states, made of smooth intervals of a motion; NaN after the time at which it stopped."""
+    """A function from times to states, made of smooth intervals of a motion; NaN at times after the last interval.
+
+    If a motion backward in time stopped early, the states at times before its stop mean nothing.
+    """
 
     def __init__(
         self, t0: float, y0: tuple[float, ...], span: tuple[float, float], stats: Stats, chunks: list[Chunk]

@@ -30,7 +30,8 @@ class RunState:
     y : array, shape (N,)
         The states at ``t``.
     spent : int
-        Number of SciPy's evaluations so far.
+        Number of SciPy's evaluations so far, plus a fixed number for each window (interval that SciPy integrates at
+        once), which stands for the other work on it.
     mark : (int, float)
         The values of ``spent`` and of the time covered, s, when it was last checked whether the motion advances so
         slowly that its end cannot be reached.

@@ -24,17 +24,17 @@ from symrot.propagation.switched.run_state import RunState
 
 __all__ = ["SciPyPieces", "SteppedPieces", "smooth_pieces"]
 
-ROOM = 4  # steps in the first piece after a switch; each further piece has twice as many
+ROOM = 4  # steps in the first piece after a switch; each further piece has twice as many, up to a limit of the stepper
 WINDOWS, FEWEST = 64, 8  # SciPy follows at most 1/64 of the span at first, later at most 1/8
 JOIN = 0.01  # part of the tolerance: largest gap between the ends of two LSODA steps
 RECENT = 4  # number of smooth parts whose lengths predict the length of the next one
-FIRST_ANGLE = 30.0  # rad: rotation in the first window of SciPy
+FIRST_ANGLE = 30.0  # rad: half of the largest rotation in the first window of SciPy
 SHORTEST = 1e-6  # part of the span: shortest first window
 OVERHEAD = 200  # evaluations that take as long as the other work for a window
 
 
 class SteppedPieces:
-    """Iterator over pieces of a smooth motion that a stepper in C follows, until the caller finds a switch."""
+    """A smooth motion that a stepper in C follows; :meth:`pieces` yields it until the caller finds a switch."""
 
     def __init__(self, run: RunState, regime: Regime, motion: SteppedMotion, rates: list[float]) -> None:
         if not np.isfinite(run.y).all():
@@ -72,14 +72,17 @@ class SteppedPieces:
                 room = min(2 * room, integration.stepper.rows_per_call)
 
     def cost(self) -> NDArray[np.int64]:
-        """Return the numbers of steps accepted, steps rejected and evaluations so far, as an array."""
+        """Return the numbers of steps accepted, steps rejected and evaluations so far, as an array.
+
+        Also store in the run the time, if any, from which rounding errors may matter (:meth:`RunState.note_rounding`).
+        """
         integration = self.integration
         self.run.note_rounding(self.zero)
         return np.array([integration.accepted, integration.rejected, integration.evaluations])
 
 
 class SciPyPieces:
-    """Iterator over pieces of a smooth motion that SciPy follows, one interval of time (window) after another."""
+    """A smooth motion that SciPy follows; :meth:`pieces` yields it, one interval of time (window) after another."""
 
     def __init__(self, run: RunState, regime: Regime, motion: SciPyMotion, rates: list[float]) -> None:
         self.run, self.motion, self.rates, self.counts = run, motion, rates, np.zeros(3, dtype=np.int64)
@@ -131,8 +134,8 @@ class SciPyPieces:
         (_, rates, *_), _ = error_blocks(self.motion.plan)
         turning = float(np.linalg.norm(run.y[:rates]))  # rad/s, or 1 if omega is not a state
         instants = [Instant(run.motion.start), *run.recent][-RECENT - 1 :]
-        # twice the longest recent smooth interval, or the time of a few rotations; in a longer window, the work beyond
-        # the next switch would be wasted
+        # twice the longest recent smooth interval, or the time of about ten rotations; in a longer window, the work
+        # beyond the next switch would be wasted
         longest = max((abs(after - before) for before, after in pairwise(instants)), default=run.span)
         likely = min(longest, FIRST_ANGLE / max(turning, FIRST_ANGLE / run.span))
         return min(max(2.0 * likely, SHORTEST * run.span), run.span / WINDOWS)
@@ -156,14 +159,19 @@ class SciPyPieces:
             raise IntegrationStopped(t, f"{MAX_EVALUATIONS} evaluations were not enough", run.end)
 
     def cost(self) -> NDArray[np.int64]:
-        """Return the numbers of steps accepted, steps rejected and evaluations so far, as an array."""
+        """Return the numbers of steps accepted, steps rejected and evaluations so far, as an array.
+
+        Also store in the run the time, if any, from which rounding errors may matter (:meth:`RunState.note_rounding`).
+        """
         self.run.note_rounding(self.zero)
         return self.counts
 
 
 def smooth_pieces(run: RunState, regime: Regime, rates: list[float]) -> SteppedPieces | SciPyPieces:
-    """Return an iterator over the smooth motion ``regime`` in groups of steps, from the present state of ``run``."""
-    # rates: the parameters of the rates
+    """Return the smooth motion ``regime`` from the present state of ``run``; its method ``pieces`` yields its pieces.
+
+    ``rates`` are the values of the parameters of the rates.
+    """
     motion = regime.motion
     if isinstance(motion, SteppedMotion):
         return SteppedPieces(run, regime, motion, rates)

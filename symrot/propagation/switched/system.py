@@ -154,7 +154,10 @@ class SwitchedSystem:
         return modes, undecided
 
     def regime(self, held: frozenset[str], modes: Modes) -> Regime:
-        """Return the smooth motion in which the arguments of the switching functions ``held`` stay at zero."""
+        """Return the smooth motion in which the arguments of the switching functions ``held`` stay at zero.
+
+        Raise InputError if the argument of another function contains one of them: it then has no value.
+        """
         # the values of the other functions only choose branches of where(condition, u, v)
         key = held, tuple(modes.values()) if self._chooses else ()
         if key not in self._regimes:
@@ -229,8 +232,8 @@ def is_continuous(switch: Switch) -> bool:
 
 
 def _bends(switch: Switch | TorqueSwitch) -> bool:
-    """Return whether a function only has a kink where it switches, as abs has, and no jump, as sign has."""
-    # at the switch, both values of its mode, 1 and -1, then give the right result
+    """Return whether a function, not floor, only has a kink where it switches, as abs has, and no jump, as sign has."""
+    # at the switch, both values of its mode, 1 and -1, then give the right result; floor would give True here
     return switch.at_zero == 1
 
 

@@ -198,7 +198,10 @@ def condition_words(condition: str) -> str:
 
 
 def _without_negative_terms(relation: Relation) -> Relation:
-    """Move the negative terms of a sum to the other side of a relation: ``-a + b >= 0`` -> ``b >= a``."""
+    """Move the negative terms of a sum to the other side of a relation if that is 0: ``-a + b >= 0`` -> ``b >= a``.
+
+    The relation is unchanged if the sum has terms of one sign only.
+    """
     sign, left, right = relation
     negative = [term.args[0] for term in left.args if term.kind == "neg"] if left.kind == "sum" else []
     positive = [term for term in left.args if term.kind != "neg"]

@@ -90,9 +90,7 @@ def _of_entry(number: int, entry: Entry) -> Iterator[Block]:
 
 
 def _of_conditions(document_name: str, items: Sequence[Finding]) -> Iterator[Block]:
-    """Yield the blocks of the page about formulas that hold only under a condition which the document does
-    not state.
-    """
+    """Yield the blocks of the page about formulas that need a condition which the document does not state."""
     if not items:
         return
     yield Block("entry", "Conditions left out")

@@ -33,7 +33,7 @@ def total(items: Sequence[Finding]) -> str:
 
 
 def lines(survey: Survey) -> list[str]:
-    """Return the lines of a table: one line per claim, more if the claim is not true, and a count for each document.
+    """Return the lines of a table: a title for each document, one line per claim or more if it does not hold, a count.
 
     ``survey`` is the result of :func:`symrot.report.errata.entries.survey`.
     """

@@ -65,8 +65,9 @@ def _mark(node: Node) -> Node:
 
 
 def _marked_members(old: Node, new: Node) -> tuple[Node, Node]:
-    """Return the printed and the corrected sum or product, with a box around each term or factor that the other
-    lacks.
+    """Return the printed and the corrected sum or product, with boxes around the terms or factors that differ.
+
+    If each has the same number of these, they are compared in pairs, and only what differs inside a pair gets a box.
     """
     only_old, only_new = _places_of_others(old, new), _places_of_others(new, old)
     befores, afters = list(old.args), list(new.args)
@@ -112,16 +113,13 @@ def filled(template: str, parts: Mapping[str, Node], letters: Mapping[str, str],
 
 
 class _Typesetter(Writer):
-    """Writer of LaTeX as a book prints it: with integrals, fractions, and the letters of the document that
-    is quoted.
-    """
+    """Writer of LaTeX as a book prints it: with integrals, fractions, and the letters of the quoted document."""
 
     def __init__(self, letters: Mapping[str, str], functions: Collection[str]) -> None:
         super().__init__(functions, NO_VECTORS)
         self.letters = letters
 
     def formula(self, node: Node, binding: int = 0) -> str:
-        # a part that an erratum corrects
         if node.kind == MARK:
             return f"\\boxed{{{self.formula(node.args[0])}}}"
         written = super().formula(node, binding)
@@ -181,9 +179,8 @@ class _Typesetter(Writer):
     def _row(self, factors: list[Node], alone: bool = True) -> str:
         """Return the product of ``factors`` as LaTeX: ``[x, y + z]`` gives ``x (y + z)``.
 
-        A single factor has brackets only if ``alone`` is false: it then stands beside a fraction.
+        A single factor that is a sum has brackets only if ``alone`` is false: it then stands beside a fraction.
         """
-        # false if other parts of the same product, such as a fraction, precede or follow
         alone = alone and len(factors) == 1
         written = ""
         after_function = False
