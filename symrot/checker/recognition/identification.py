@@ -226,8 +226,7 @@ def _changes(match: Identification) -> tuple[int, int, int]:
 
 
 def _views(shape: tuple[int, int] | None, count: int) -> Iterator[View]:
-    """Yield the ways to read ``count`` entries: as they are, transposed, with the scalar of a quaternion last, or both.
-    """
+    """Yield the ways to read ``count`` entries: as they are, transposed, with a quaternion's scalar last, or both."""
     plain = tuple(range(count))
     yield View("", shape, plain)
     if shape is None or shape == (1, 1):
