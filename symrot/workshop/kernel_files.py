@@ -155,7 +155,10 @@ def _all_files(targets: Sequence[str], directory: Path, progress: Callable[[str]
 
 
 def _printed_before(directory: Path, targets: Sequence[str]) -> list[str]:
-    """Return the paths of all kernel files in ``directory``, even of kernels that symrot no longer has."""
+    """Return the paths of all files in the folders of ``targets`` with the suffixes that emitted kernels have.
+
+    They include kernels that symrot no longer has, and such files of other origin.
+    """
     return [
         path.relative_to(directory).as_posix()
         for target in targets
@@ -192,12 +195,12 @@ def write_files(directory: Path, files: Mapping[str, str]) -> list[Path]:
 def write_all(directory: Path, targets: Sequence[str], progress: Callable[[str], object]) -> list[Path]:
     """Write the files of all kernels, of the library and of shipped scenes; return the changed paths.
 
-    Kernel files that symrot no longer prints are deleted; their paths are returned too.
+    Other files in the folders of ``targets`` with the suffixes of kernels, such as those of a kernel that symrot no
+    longer has, are deleted; their paths are returned too.
     """
     files = _all_files(targets, directory, progress)
     changed = write_files(directory, files)
     for name in _printed_before(directory, targets):
-        # a kernel that no longer exists
         if name not in files:
             (directory / name).unlink()
             changed.append(directory / name)
