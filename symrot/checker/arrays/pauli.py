@@ -46,7 +46,7 @@ def with_pauli_matrices(relation: Relation, known: Collection[str]) -> tuple[Rel
     Raises
     ------
     InputError
-        For a matrix that is both inside and outside of an exponent.
+        For a matrix that is both inside and outside of an exponent, in an equation with i.
     """
     sign, left, right = relation[0], *map(_with_commutators, relation[1:])
     nodes = nodes_of(left, right)

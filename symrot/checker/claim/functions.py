@@ -331,7 +331,8 @@ def _is_rate(value: Expr) -> bool:
 def _integrate(scope: Scope, node: Node) -> Any:
     """Return an integral; a vector or matrix is integrated entry by entry.
 
-    The divisors of the integral are recorded. Divisors and radicands that contain the variable are refused.
+    The divisors of the integral are recorded. InputError is raised for divisors that contain the variable and may be
+    zero, and for such radicands that may be negative.
     """
     integrand, *ranges = node.args
     limits = []
