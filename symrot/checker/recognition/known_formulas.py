@@ -133,7 +133,7 @@ def _related() -> Iterator[Named]:
         yield f"relation for {relation.title}", relation.source, primitive(relation.difference)
 
 
-SCALAR_PRODUCTS = ("power of a torque", "kinetic energy from the angular momentum")
+SCALAR_PRODUCTS = ("power of a torque", "kinetic energy of rotation from the angular momentum")
 """Names of formulas that are a scalar product a . b. Every scalar product equals such a formula; so a claim means it
 only with the letters that books use for its two vectors."""
 

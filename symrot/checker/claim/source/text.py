@@ -79,13 +79,13 @@ def claim_of_relation(
     Raises
     ------
     InputError
-        For a relation that is no equation, for a built-in function with too few or too many arguments, and for units of
-        names that the claim does not have.
+        For a relation that is no equation, a built-in function with too few or too many arguments, a hypothesis that
+        cannot be read, and a unit that is unknown or belongs to a name that the claim does not have.
     """
     if relation[0] != "==":
         instead = "an inequality cannot be decided here; write '=' to ask whether both sides are equal"
         raise InputError(f"expected a claim with '=', got '{relation[0]}' in {source[:60]!r} ({instead})")
-    _check_arguments((*relation[1:], *(tree for _, tree in define), *context), source)
+    _check_arguments((*relation[1:], *(tree for _, tree in define), *context), source.strip())
     relation, on_indices = written_out(relation)
     notes = [*notes, *([on_indices] if on_indices else [])]
     relation, on_form = _with_own_name(relation)
@@ -356,8 +356,10 @@ def _with_rotated_axes(relation: Relation) -> Relation:
 
 
 def read_hypothesis(source: str, where: str, declared: Declared | None = None, words: Collection[str] = ()) -> Relation:
-    """Return a hypothesis such as ``x > 0`` as (sign, left, right); names in ``words`` are not split into letters."""
-    # ``declared`` are the names of a claim that declares its names
+    """Return a hypothesis such as ``x > 0`` as (sign, left, right); raise InputError if it cannot be read.
+
+    ``declared`` are the names of a claim that declares its names; names in ``words`` are not split into letters.
+    """
     if declared is None and isinstance(source, str) and is_latex(source):
         relation = read_latex(source, where).relation
     elif declared is None:
