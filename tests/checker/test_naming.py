@@ -5,6 +5,9 @@ import json
 import pytest
 
 import symrot
+from symrot.checker.recognition.formulas.kinematics import GYROSCOPE, OF_ONE_ENTRY
+from symrot.checker.recognition.formulas.points import ANY_VECTORS, GENERAL
+from symrot.checker.recognition.known_formulas import SCALAR_PRODUCTS, by_fingerprint
 from symrot.cli.main import main
 from symrot.errors import InputError
 
@@ -115,6 +118,7 @@ def test_a_formula_with_one_fault_is_doubtful_and_repaired(claim, code, name):
 @pytest.mark.parametrize("claim", [
     "L = I α", "y == p*s + s**3 + exp(u)", "y == sin(2*x)", "M == Matrix([[cos(a), sin(a)], [sin(a), cos(a)]])", "x == 5",
     "Omega == a*g*b/(c*d)", "omega == v/r", "k == J/m", "I_0 == C*omega_3", "x == C*omega_3", "y == m*g/r",
+    "K == (p_x*v_x + p_y*v_y + p_z*v_z)/2",
 ])  # fmt: skip
 def test_any_other_formula_may_be_a_definition(claim):
     verdict = symrot.check(claim)
@@ -362,3 +366,8 @@ def test_an_inverse_function_limits_the_angle(claim, note):
     """The verdict names the range in which the inverse function gives the angle."""
     verdict = symrot.check(claim)
     assert verdict.verdict == "recognised" and note in verdict.notes
+
+
+def test_every_formula_that_only_its_letters_name_is_a_known_formula():
+    names = {known.name for formulas in by_fingerprint().values() for known in formulas if known.only_named}
+    assert {*SCALAR_PRODUCTS, *ANY_VECTORS, *GENERAL, *OF_ONE_ENTRY, GYROSCOPE} <= names

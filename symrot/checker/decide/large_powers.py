@@ -144,7 +144,6 @@ def shorter_powers(formulas: Sequence[Expr]) -> ShorterPowers | None:
         same, power = next(((other, power) for other in bases for power in range(1, HIGHEST_OF_BASE + 1)
                             if _equal_up_to_sign(base, other**power)), (base, 1))  # fmt: skip
         bases.setdefault(same, {})[base] = power
-    # there is no large power, or there are too many different bases
     if not large or len(bases) > MOST_BASES:
         return None
     values: dict[Expr, Expr] = {}

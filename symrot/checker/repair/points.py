@@ -130,8 +130,11 @@ class Point:
         return Point(self.symbols, self.functions, {**self.definitions, name: node}, spent=self.spent)
 
     def raised(self, variable: Node) -> "Point":
-        """Return a copy of the point whose values are dual numbers; their slopes are derivatives by ``variable``."""
-        # variable: a symbol, f(t), or diff(f(t), t)
+        """Return a copy of the point whose values are dual numbers; their slopes are derivatives by ``variable``.
+
+        The variable is a symbol, ``f(t)`` or ``diff(f(t), t)``. Raise UndefinedValue if it has no value at the point,
+        or if the point's weight exceeds HEAVIEST.
+        """
         order = 0
         inner = variable
         while is_derivative(inner):
