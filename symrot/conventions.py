@@ -1,4 +1,4 @@
-"""The conventions of symrot, stated once. Every docstring cites this page.
+"""The conventions of symrot, stated once.
 
 Frames
     Right-handed. ``s`` is the space frame (fixed axes), ``b`` the body frame (axes that rotate with the body).

@@ -25,7 +25,7 @@ NUMBER = re.compile(r"(?<![\w.])(\d+\.\d*(?:e[-+]?\d{1,3})?f?|\d+e[-+]?\d{1,3}f?
     LOOP,
     BLOCKS,
     PARTS,
-) = (  # forms of a batch: one loop; blocks, computed again for large angles; several loops over a block
+) = (  # forms of a batch: one loop; blocks, computed again for large angles; two loops over each block
     re.compile(r"(?: \(void\)\w+;)*" + re.escape(text).replace("@", "([^{}]*)"))
     for text in (
         " SYMROT_INDEPENDENT for (size_t k = 0; k < n; ++k) {@} ",
@@ -76,7 +76,7 @@ def require(holds, message):
 
 
 def nearest(value, real):
-    """Return the exact ``value`` rounded to the nearest number of the C type ``real``, ties to even."""
+    """Return the exact ``value`` rounded to the digits of the C type ``real``, ties to even, for any exponent."""
     bits, shift = {"double": 53, "float": 24}[real], value.denominator.bit_length() - abs(value.numerator).bit_length()
     scale = Fraction(2) ** (bits + shift - (abs(value) * Fraction(2) ** shift >= 1))
     return round(value * scale) / scale
@@ -165,7 +165,8 @@ class Evaluator:
     def run(self, body, places, targets=()):
         """Evaluate the statements ``body`` of a C function, with values of its inputs from the map ``places``.
 
-        Return the value after ``return``, or a map from each of ``targets``, such as ``"q[1]"``, to the assigned value.
+        Return the value after ``return``, or a map from each assigned output, such as ``"q[1]"``, to its value.
+        ValueError is raised if an output is assigned twice or is not one of ``targets``.
         """
         self.names, results, statements = dict(places), {}, body.split(";")
         require(not statements.pop().strip(), f"expected a semicolon at the end, got {body[-60:]!r}")
@@ -250,7 +251,6 @@ class KernelCheck:
         reader = Evaluator({}, self.functions, self.real, self.calls, self.constants if targets else ())
         computed = reader.run(body, places, targets)
         require(
-            # functions such as symrot_sin are accurate only for small angles: the C text must test the angle
             reader.limited_angles <= set(map(reader.read, tested)),
             f"{self.name} calls a function that is accurate only for small angles, for an angle that the C text does "
             "not test",
@@ -306,7 +306,7 @@ class KernelCheck:
         self.compare([again], batch, map(of_sample, self.outputs))
 
     def compare(self, bodies, places, targets, tested=()):
-        """Check that the bodies of C functions assign to each target, such as ``"q[1]"``, the value of its formula."""
+        """Check that ``bodies``, in turn, assign to each target, such as ``"q[1]"``, the value of its formula."""
         targets, computed = [*targets], {}
         for body in bodies:
             computed |= self.run(body, places, [target for target in targets if target not in computed], tested)
@@ -341,9 +341,9 @@ class KernelCheck:
 
 
 class FloatFunctions(dict):
-    """A dictionary from (function name, argument values) to the value of the function in floats.
+    """A dictionary from (function name, *argument values) to the function's value, computed with floats.
 
-    A value is computed when it is first needed.
+    A value, as a Fraction, is computed at each look-up.
     """
 
     def __missing__(self, call):
@@ -444,7 +444,7 @@ def prove(law, case, formulas):
 
 
 def complete(cases):
-    """Return whether the cases of a law's proof cover both branches of every conditional in the formulas."""
+    """Return whether the cases of a law's proof cover both branches of each conditional that they decide."""
     if not cases or not cases[0]:
         return len(cases) == 1
     # a case is a list of choices [left, relation, right], with the relation "<" or ">="
@@ -454,9 +454,10 @@ def complete(cases):
 
 
 def functions_of(text, name, files):
-    """Return a map from the name of each function in a C text to (whether it is static, type, arguments, body).
+    """Return a map from the name of each function in a C text to (prefix, type, arguments, body).
 
-    The text may include only <math.h>, the header of the kernel ``name``, and symrot_math.h if it is in ``files``.
+    The prefix is ``"static inline "`` or empty. The text may include only <math.h>, the header of the kernel ``name``,
+    and symrot_math.h if it is in ``files``.
     """
     odd = re.search(r"\\|\?\?|//|[\0-\x09\x0b-\x1f]", text)
     require(not odd, f"expected no backslash, trigraph, // comment or control character, got {odd and odd[0]!r}")

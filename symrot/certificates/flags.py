@@ -1,8 +1,8 @@
 """The effect of compiler flags on a certificate: bits and error bounds hold, only the bounds hold, or nothing holds.
 
-A certificate is about the operations of the C text, each rounded once to nearest. A flag that lets the compiler round
-elsewhere makes the certificate void. With contraction (a*b + c rounded once) the bits change and only the error bounds
-hold; even a bound may fail if one product is fused into one sum and rounded before another.
+A certificate is about the operations of the C text, each rounded once to nearest. A flag that lets the compiler
+compute other roundings makes the certificate void. With contraction (a*b + c rounded once) the bits may change and only
+the error bounds hold; even a bound may fail if a product is fused into one sum and rounded before another sum.
 """
 
 import re
@@ -53,6 +53,7 @@ class FlagRule:
 
 
 FAST = ("reassociation", "reciprocals", "finite numbers only", "unsigned zeros", "approximate functions")
+EXCESS = "numbers are kept with more digits than their type and rounded twice (FLT_EVAL_METHOD != 0)"
 VOID: dict[str, str] = {  # property that a flag switches on -> why it voids the certificate
     "reassociation": "sums and products are computed in another order: other roundings",
     "reciprocals": "x/y becomes x*(1/y): one rounding more",
@@ -60,7 +61,9 @@ VOID: dict[str, str] = {  # property that a flag switches on -> why it voids the
     "unsigned zeros": "the sign of a zero may change, which affects atan2, copysign and division",
     "approximate functions": "square roots and functions of libm may be replaced by less accurate ones",
     "flush to zero": "numbers below 2^-1022 (floats: 2^-126) become zero",
-    "excess precision": "numbers are kept with more digits than their type and rounded twice (FLT_EVAL_METHOD != 0)",
+    "excess precision": EXCESS,
+    "32-bit code": EXCESS,
+    "no SSE2": EXCESS,
     "float literals": "literals of double are rounded to float",
 }
 _WORDS = r"[\w.,+\-=/:@%]*"
@@ -92,10 +95,14 @@ TABLE: tuple[FlagRule, ...] = (
     FlagRule(r"-fno-approx-func", "keeps the functions of libm", clears=("approximate functions",)),
     FlagRule(r"-mdaz-ftz|-f?denormal-fp-math(-f32)?=(?!ieee).*", VOID["flush to zero"], sets=("flush to zero",)),
     FlagRule(r"-mno-daz-ftz|-fdenormal-fp-math(-f32)?=ieee(,ieee)?", "keeps small numbers", clears=("flush to zero",)),
-    FlagRule(r"-mfpmath=(387|both|sse[+,]387|387[+,]sse)|-mno-sse2?|-m32|-mx32|-mlong-double-64",
-             VOID["excess precision"],
-             sets=("excess precision",)),
-    FlagRule(r"-mfpmath=sse|-m64", "each operation is rounded to its type", clears=("excess precision",)),
+    FlagRule(r"-mfpmath=(387|both|sse[+,]387|387[+,]sse)|-mlong-double-64", EXCESS, sets=("excess precision",),
+             clears=("SSE arithmetic",)),
+    FlagRule(r"-mfpmath=sse", "each operation is rounded to its type, if the processor has SSE2",
+             sets=("SSE arithmetic",), clears=("excess precision",)),
+    FlagRule(r"-m32|-mx32", EXCESS, sets=("32-bit code",)),
+    FlagRule(r"-m64", "64-bit code rounds each operation to its type", clears=("32-bit code",)),
+    FlagRule(r"-mno-sse2?", EXCESS, sets=("no SSE2",), clears=("SSE2",)),
+    FlagRule(r"-msse2", "the processor, which has SSE2", sets=("SSE2",), clears=("no SSE2",)),
     FlagRule(r"-fexcess-precision=(standard|fast)|-ffloat-store", "of no effect where FLT_EVAL_METHOD is 0"),
     FlagRule(r"-fexcess-precision=16|-fsingle-precision-constant", VOID["float literals"], sets=("float literals",)),
     FlagRule(r"-ffp-model=strict", "no contraction, all roundings kept",
@@ -203,7 +210,8 @@ def classify_flags(flags: str | Sequence[str]) -> FlagEffect:
     Raises
     ------
     InputError
-        If a flag is not in the table, or the compiler is neither gcc nor clang.
+        If a flag is not in the table, the compiler is neither gcc nor clang, or a word is neither a flag nor the name
+        of a file.
     """
     try:
         words = shlex.split(flags) if isinstance(flags, str) else list(flags)
@@ -216,7 +224,7 @@ def classify_flags(flags: str | Sequence[str]) -> FlagEffect:
     compiler, place = _compiler(words)
     switched: dict[str, str] = {}  # property that is on -> the flag that switched it on
     if _X87.fullmatch(compiler):
-        switched["excess precision"] = compiler
+        switched["32-bit code"] = compiler
     is_off = False
     while place < len(words):
         word = words[place]
@@ -231,6 +239,9 @@ def classify_flags(flags: str | Sequence[str]) -> FlagEffect:
             switched.pop(name, None)
         switched |= dict.fromkeys(rule.sets, word)
         is_off = (is_off or "contraction" in rule.clears) and "contraction" not in rule.sets
+    # 32-bit code rounds each operation to its type only if SSE2 is requested and used
+    if {"SSE arithmetic", "SSE2"} <= switched.keys():
+        switched.pop("32-bit code", None)
     remarks = [FlagRemark(flag, NOTHING, VOID[name]) for name, flag in switched.items() if name in VOID]
     if "contraction" in switched:
         remarks.append(FlagRemark(switched["contraction"], BOUNDS, CONTRACTION))
@@ -243,7 +254,7 @@ def classify_flags(flags: str | Sequence[str]) -> FlagEffect:
 
 
 def _compiler(words: Sequence[str]) -> tuple[str, int]:
-    """Return the compiler's name at the start of a command, or ``""``, and the index of the first flag."""
+    """Return the compiler's name at the start of a command, or ``""``, and the index of the word after it."""
     names = [re.split(r"[/\\]", word)[-1] for word in words[:2]]
     # a launcher such as ccache may come first
     place = 1 if names[0] in LAUNCHERS and len(names) > 1 else 0

@@ -142,7 +142,10 @@ def is_step(data: object) -> bool:
 
 
 def with_bounds(data: Data, bounds: Data) -> Data:
-    """Return the certificate ``data`` of a step with one more section: ``bounds`` of the errors of one step."""
+    """Return the certificate ``data`` of a step, not sealed, with the section ``bounds``: bounds of one step's errors.
+
+    The section ``trusted`` is replaced by one that fits.
+    """
     bare = {key: value for key, value in data.items() if key not in ("bounds", "trusted", "seal")}
     return bare | {"bounds": bounds, "trusted": trusted(data["step"]["method"], True, "scene" in data)}
 
@@ -223,6 +226,11 @@ def bounds_of_step(
         Ranges of the inputs by their places, such as ``"x[0]"`` and ``"dt"``.
     fresh : bool
         Whether to compute bounds of rounding errors even if the user's cache has them.
+
+    Raises
+    ------
+    InputError
+        If an error has no bound on the box, or a constant of the rates would be taken for another number.
     """
     _require_intended(rates)
     rounding = rounding_section(operations, None, box, budget=EVALUATIONS, fresh=fresh)

@@ -165,7 +165,10 @@ def _on_moments(difference: Expr, strict: bool, flipped: str) -> Verdict | None:
 
 
 def _counterexample(claim: Claim, difference: Expr, strict: bool) -> Counterexample | None:
-    """Return an exact point where both sides are defined and the inequality fails; None if the search finds none."""
+    """Return an exact point where both sides are defined and the inequality fails; None if the search finds none.
+
+    Claims with hypotheses, or with powers whose exponents are not numbers, are not searched.
+    """
     equation = claim.equation
     if equation.hypotheses or equation.nonzero or equation.bases:
         return None

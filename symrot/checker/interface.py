@@ -70,9 +70,9 @@ def check(
     Parameters
     ----------
     left : str, Expr or Matrix
-        The whole claim as text, ``"left == right"`` in SymPy syntax, as people type it, or in LaTeX (with a backslash):
-        names are real symbols, ``phi(t)`` is a function of time. Or the left side as a SymPy expression or matrix, or
-        the whole claim as a SymPy ``Eq``.
+        The whole claim as text, ``"left == right"`` in SymPy syntax, as people type it, or in LaTeX (with a backslash,
+        a brace or a dollar sign): names are real symbols, ``phi(t)`` is a function of time. Or the left side as a SymPy
+        expression or matrix, or the whole claim as a SymPy ``Eq``.
     right : Expr or Matrix, optional
         The right side, if ``left`` is a SymPy expression or matrix.
     assume : sequence
@@ -240,7 +240,7 @@ def verdicts_of_file(
     """Yield the verdict on each claim of a file; a claim that cannot be read or has no meaning is ``"refused"``, with a
     reason.
 
-    ``progress`` is called with a line of text before each claim.
+    ``progress`` is called with a line of text before the check of each claim that can be read.
     """
     for entry in read_entries(path):
         if isinstance(entry, Refusal):

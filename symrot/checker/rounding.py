@@ -16,6 +16,8 @@ __all__ = ["rounded_value", "with_rounding"]
 def with_rounding(claim: Claim, verdict: Verdict) -> Verdict:
     """Return the verdict "true" for a claim such as ``2/3 == 0.667``, whose decimal number is correctly rounded.
 
+    A number with two dots after it, ``0.66..``, may also be cut off.
+
     For a wrong digit, return ``verdict`` with the diagnosis "digits" and the corrected claim as its repair, or the
     verdict "false" if the right digits cannot be written. Return ``verdict`` for any other claim.
     """
@@ -32,7 +34,8 @@ def with_rounding(claim: Claim, verdict: Verdict) -> Verdict:
 def rounded_value(claim: Claim) -> str:
     """Return the value of ``claim.value`` rounded to as many decimal places as ``claim.printed`` has; "" if uncertain.
 
-    ``claim.printed`` is the number that the document prints.
+    ``claim.printed`` is the number that the document prints. Return "" also if the value, or the power of ten in the
+    printed number, exceeds the range of doubles.
     """
     assert claim.value is not None
     interval = enclosure(claim.interpreter().read(claim.value))
@@ -40,7 +43,10 @@ def rounded_value(claim: Claim) -> str:
         return ""
     mantissa, _, power = claim.printed.strip().lower().partition("e")
     places = len(mantissa.partition(".")[2])
-    right = f"{float(interval.mid) / 10.0 ** int(power or 0):.{places}f}" + (f"e{power}" if power else "")
+    try:
+        right = f"{float(interval.mid) / 10.0 ** int(power or 0):.{places}f}" + (f"e{power}" if power else "")
+    except ArithmeticError:  # beyond the range of double precision
+        return ""
     return right if decide_value(replace(claim, printed=right)).verdict == "true" else ""
 
 

@@ -25,7 +25,7 @@ def processor_seconds(limit: float) -> Iterator[None]:
     There is no limit on a platform without the timer ``ITIMER_PROF``, in a thread other than the main one, inside
     another such block, or if the program uses the signal SIGPROF.
     """
-    if not _timer_is_free():  # no ITIMER_PROF, another thread, inside another limit, or in use by the program
+    if not _timer_is_free():
         yield
         return
 

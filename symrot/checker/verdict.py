@@ -19,7 +19,7 @@ class Diagnosis:
     code : str
         A short name of the kind of fault, such as ``"factor"``; ``"none"`` if no fault is known.
     text : str
-        One sentence.
+        One sentence; usually empty if no fault is known.
 
     Examples
     --------

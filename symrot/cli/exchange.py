@@ -47,7 +47,8 @@ def _inertia(options: Namespace) -> int:
 def _path_and_link(text: str) -> tuple[str, str]:
     """Return the path and the name of the link in the text ``FILE:LINK``; the name may be missing.
 
-    Both may contain colons. The path is the longest beginning of the text, up to a colon, that names a file.
+    Both may contain colons. The path is the longest beginning of the text, up to a colon, that names a file; if there
+    is no such file, the text before the last colon.
     """
     ends = [len(text), *(place for place in range(len(text) - 1, 0, -1) if text[place] == ":")]
     end = next((end for end in ends if Path(text[:end]).is_file()), ends[min(1, len(ends) - 1)])

@@ -80,7 +80,7 @@ def _trajectory(propagator: Any, options: Namespace) -> Any:
     """Compute the motion that a command asks for and return its trajectory, or None after Ctrl-C.
 
     ``options`` are the parsed arguments of the command. If the propagation ends early, the samples so far are written
-    to the file of ``--out``.
+    to the file of ``--out``; unless Ctrl-C ended it, PropagationError is raised.
     """
     from symrot.propagation.progress import reporting
 

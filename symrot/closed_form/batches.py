@@ -162,7 +162,7 @@ def _together(values: Sequence[Column], n: int) -> Floats:
 def usual(omega: Floats) -> NDArray[np.bool_]:
     """Return for each angular velocity, shape (n, 3), whether a batch can compute its motion.
 
-    The largest component must be zero or from SMALLEST to LARGEST.
+    The largest absolute value of its components must be zero or from SMALLEST to LARGEST.
     """
     # other motions must be computed one by one
     largest = abs(omega).max(axis=1)

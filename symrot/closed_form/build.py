@@ -1,8 +1,8 @@
 """Compilation of the closed forms, once per machine: all scenes share the code and differ only in constants.
 
-A closed form consists of two C files, compiled in parallel: ``name.c`` computes the constants of a motion, and
-``name_at.c`` contains the loops over samples. Double-double arithmetic (sums of two doubles) requires that every
-operation is rounded separately. Each motion tests this before it is computed.
+Most closed forms consist of two C files, compiled in parallel: ``name.c`` computes the constants of a motion, and
+``name_at.c`` contains the loops over samples; some need no ``name.c``. Double-double arithmetic (sums of two doubles)
+requires that every operation is rounded separately. Each motion tests this before it is computed.
 """
 
 import ctypes

@@ -50,7 +50,7 @@ def _place(function: Any) -> int:
 
 
 def evaluate(batch: Batch, times: Floats, omega: Floats, quaternion: Floats | None, workers: int = 1) -> list[int]:
-    """Write the samples of n motions into arrays, and return the indices of the motions whose samples are not valid.
+    """Write the samples of n motions into arrays, and return the indices of motions with invalid samples, in order.
 
     Parameters
     ----------

@@ -152,15 +152,14 @@ def _driven_axis(scene: Scene) -> int | None:
 
 
 def _driven_symmetry_axis(scene: Scene) -> int | None:
-    """Return the index of the symmetry axis about which a constant torque drives the body.
+    """Return the index of the symmetry axis about which a constant torque, or none, drives the body.
 
-    Return None if there is no such axis, or if the scene's output includes the attitude and the body is damped: then
-    the attitude has no closed form.
+    The linear damping about the two other axes must be equal. Return None if there is no such axis, or if the scene's
+    output includes the attitude and the body is damped: then the attitude has no closed form.
     """
     if not _is_driven(scene):
         return None
     push, drag = torque_and_damping(scene)
-    # with damping, the attitude has no closed form
     if any(drag) and set(scene.output.quantities) & ATTITUDE_QUANTITIES:
         return None
     for axis in range(3):

@@ -83,12 +83,12 @@ def ways(value: Formulas, chained: Formulas, base: Program, entries: Entries, gr
         Names of the derivatives d(output)/d(input), in the order in which they are printed.
     groups : sequence of sequences of str
         Groups of inputs, such as the three components of omega. If an output is linear in a group, as ``a*x + b*y``
-        is in (x, y), a further way computes it from its derivatives a and b.
+        is in (x, y), further ways compute it from its derivatives a and b.
 
     Notes
     -----
     A derivative of sin(x)/x contains divisions by x, which give NaN at x = 0. The chain rule writes it in functions
-    that are finite there; so it is the only way for programs that call sinc and similar functions.
+    that are finite there. So programs that call sinc and similar functions are differentiated by the chain rule alone.
     """
     explicit = _explicit(value.explicit, entries)
     every = [chained]
@@ -242,7 +242,8 @@ def _with_coefficients(value: Formulas, entries: Entries) -> Formulas:
     """Return formulas in which the constant factors of each term of an output are one temporary.
 
     ``(a*b*x + c*y)/d`` with the variables x and y becomes ``e*x + f*y`` with ``e = a*b/d`` and ``f = c/d``. Derivatives
-    have the same coefficients, so that these are computed once, and no division of the sum is left.
+    have the same coefficients, so that these are computed once, and no division of the sum is left. An output whose
+    divisor contains a variable is unchanged.
     """
     varying = {variable for _, variable in entries}
     for symbol, formula in value.named:

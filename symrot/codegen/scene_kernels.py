@@ -83,8 +83,8 @@ def rate_derivatives(equations: Equations, variables: Sequence[str]) -> tuple[Fo
     equations : Equations
         The equations of motion.
     variables : sequence of str
-        ``"y"`` (all states), ``"omega"``, ``"q"`` or ``"angles"`` (some states), a single state, ``"t"``, or a physical
-        constant of the equations.
+        ``"y"`` (all states), ``"omega"``, ``"q"`` or ``"angles"`` (some states), a single state, or a symbol in the
+        equations: ``"t"`` or a physical constant.
 
     Returns
     -------
@@ -94,7 +94,7 @@ def rate_derivatives(equations: Equations, variables: Sequence[str]) -> tuple[Fo
     Raises
     ------
     InputError
-        If the equations contain no such state or constant, or if one is named twice.
+        If the equations contain no such state or symbol, or if one is named twice.
     """
     chosen = {name: _variables(equations, name) for name in variables}
     every = [symbol for symbols_ in chosen.values() for symbol in symbols_]
@@ -135,7 +135,7 @@ def rates_jacobian_program(
 
 
 def _variables(equations: Equations, name: str) -> tuple[Symbol, ...]:
-    """Return the symbols that a name stands for: all states for ``"y"``, those of omega for ``"omega"``, or one.
+    """Return the symbols that ``name`` stands for: the states of ``"y"``, ``"omega"``, ``"q"`` or ``"angles"``, or one.
 
     Raise InputError if the equations contain no such symbol.
     """

@@ -30,7 +30,7 @@ def variational_program(rates: Program, columns: Sequence[Collection[str]], roug
         For each variable v of the derivatives: the names of the parameters p that depend on it. It is empty for an
         initial value.
     rough : bool
-        Whether the derivative of a root is zero, not undefined, where the root is zero.
+        Whether the derivative of a root such as sqrt(x**2) is zero, not undefined, at x = 0.
 
     Returns
     -------
@@ -38,6 +38,11 @@ def variational_program(rates: Program, columns: Sequence[Collection[str]], roug
         Its states are y, then the derivatives of y by each variable, such as ``omega_1_by_1``, the derivative of
         omega_1 by variable 1. Its parameters are p, then the derivatives, by each variable, of the parameters named in
         ``columns``.
+
+    Raises
+    ------
+    InputError
+        If the rates call abs, which has no derivative at zero.
     """
     inputs = {argument.name: argument for argument in rates.signature.arguments}
     states, parameters = inputs["y"].components, inputs["p"].components if "p" in inputs else ()

@@ -49,8 +49,9 @@ class Equations:
     laws: tuple[TorqueLaw, ...]
     momentum_b: Matrix  # I omega + h, kg m^2/s, body components
     relations: tuple[Expr, ...]  # expressions that are always zero: the squared norms of unit vectors minus 1
-    modes: tuple[tuple[Symbol, Expr], ...] = ()  # modes whose guards stay at zero while the motion slides: sliding()
-    attraction: tuple[Expr, ...] = ()  # positive while nearby motions return to the zeros of these guards
+    # pairs (symbol, value): the symbol replaces a sign function in a torque while the motion stays on a jump: sliding()
+    modes: tuple[tuple[Symbol, Expr], ...] = ()
+    attraction: tuple[Expr, ...] = ()  # expressions that are positive while nearby motions return to these jumps
 
     @property
     def explicit_rates(self) -> tuple[Expr, ...]:

@@ -74,7 +74,7 @@ class Enclosed:
 
 
 def _made(high: Floats, low: Floats, error: Floats, size: Floats) -> Enclosed:
-    """Return the numbers ``high + low``, with an infinite error where ``size`` is not 0 or between LEAST and MOST.
+    """Return the numbers ``high + low``; the error is infinite where ``size`` is neither 0 nor between LEAST and MOST.
 
     ``size`` is the size of the operands or of the result; outside these limits, the bounds of the errors do not hold.
     """
@@ -89,7 +89,10 @@ def _made_of_factors(high: Floats, low: Floats, error: Floats, zero: NDArray[np.
 
 
 def exact(value: Fraction | Floats, count: int = 1) -> Enclosed:
-    """Return an array of doubles as exact numbers, or ``count`` copies of a fraction with the error of rounding."""
+    """Return an array of doubles as exact numbers, or ``count`` copies of a fraction with the error of rounding.
+
+    The error is infinite for a number other than 0 whose size is not between LEAST and MOST.
+    """
     if isinstance(value, Fraction):
         if value and not LEAST < abs(value) < MOST:  # as doubles it would be 0, infinite, or lose digits
             return Enclosed(*(np.full(count, each) for each in (0.0, 0.0, np.inf)))

@@ -247,7 +247,8 @@ class Ensemble(MotionSamples):
         Raises
         ------
         InputError
-            For an attitude, an unknown quantity, or sample times that the motions do not share.
+            For an attitude, an unknown quantity, a quantity that needs the attitude if it was not computed, or sample
+            times that the motions do not share.
 
         Examples
         --------

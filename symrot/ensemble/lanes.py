@@ -211,7 +211,7 @@ class LaneIntegration:
     tolerance : float
         Tolerance for the error of each trajectory, see :func:`symrot.propagation.steppers.taylor.step_tail`.
     max_steps : int
-        Largest number of steps of one motion.
+        Largest number of steps of one motion in each direction of time.
     workers : int
         Number of threads; each thread integrates some of the motions.
     epoch : float

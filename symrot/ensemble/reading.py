@@ -44,8 +44,8 @@ def read_variation(
     Raises
     ------
     InputError
-        If an array has a wrong shape, a value is not finite, a quaternion is zero, a name is unknown, or no body can
-        have the moments of inertia.
+        If an array has a wrong shape, a value is not finite or has a wrong sign, an attitude is no rotation, a name is
+        unknown or occurs twice, or no body can have the moments of inertia.
     """
     if parameters is not None and not isinstance(parameters, Mapping):
         raise InputError(f"parameters: expected a dict of arrays by name, got {number.show(parameters)}")
@@ -146,7 +146,10 @@ def _check_bodies(variation: Variation) -> None:
 
 
 def read_times(t: ArrayLike | None, scene: Scene, n: int) -> Floats:
-    """Return the sample times, s, after checks: shape (m,) if all trajectories share them, otherwise (n, m)."""
+    """Return the sample times, s: shape (m,) if all trajectories share them, otherwise (n, m).
+
+    Raise InputError for another shape, or for a time that is not finite.
+    """
     if t is None:  # the sample times of the scene
         span = scene.span
         return np.linspace(float(span.start), float(span.stop), span.samples)

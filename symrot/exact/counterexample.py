@@ -370,16 +370,14 @@ def _random_number(leaf: Expr) -> Callable[[Random], tuple[Fraction, ...]]:
 def _solve(hypothesis: PolyElement, generator: int, values: dict[int, Fraction]) -> bool:
     """Solve a hypothesis for a variable in which it is linear, and store the result in ``values`` under ``generator``.
 
-    Return False if there is no solution.
+    Return False if another variable in it has no value yet, or if its slope in this variable is zero.
     """
     values[generator] = Fraction(0)
-    # another variable has no value yet
     if not occurring([hypothesis]) <= values.keys():
         return False
     constant = _value(hypothesis, values)
     values[generator] = Fraction(1)
     slope = _value(hypothesis, values) - constant
-    # the variable drops out
     if not slope:
         return False
     values[generator] = -constant / slope

@@ -1,9 +1,9 @@
 """Simplified arguments of functions: ``sin(sin(x)^2 + cos(x)^2) = sin(1)``.
 
-A polynomial ring has a variable for each call of an unknown function as it is written, also if two calls are equal. So
-arguments are replaced by normal forms first, computed in polynomial rings. Old and new formula are equal wherever no
-divisor in these rings is zero. The functions of this module return the rings; their arguments ``hypotheses`` are
-expressions that are zero, ``domain`` formulas that are nonnegative.
+A polynomial ring may have one variable for each of two equal calls that are written differently, such as ``asin(1/3)``
+and ``asin(sin(x)^2/3 + cos(x)^2/3)``. So arguments are replaced by normal forms first, computed in polynomial rings.
+Old and new formula are equal wherever no divisor in these rings is zero. The functions of this module return the rings;
+their arguments ``hypotheses`` are expressions that are zero, ``domain`` formulas that are nonnegative.
 """
 
 from collections.abc import Sequence
@@ -32,7 +32,7 @@ def with_plain_arguments(
 ) -> tuple[list[Expr], tuple[FormulaRing, ...]]:
     """Return the formulas with all arguments of functions in normal form, and the rings in which this was computed.
 
-    ``f(sin(x)^2 + cos(x)^2)`` becomes ``f(1)``.
+    ``sin(sin(x)^2 + cos(x)^2)`` becomes ``sin(1)``. Arguments of functions without a definition, such as f(t), stay.
     """
     formulas, rings = list(formulas), []
     for level in range(MOST_LEVELS):

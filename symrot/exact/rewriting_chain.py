@@ -49,7 +49,7 @@ def chains(left: Any, right: Any, relations: Sequence[Any] = ()) -> tuple[Chain,
     Parameters
     ----------
     left, right : Expr or Matrix
-        Two sides of a proven equation, of the same shape.
+        Two sides, of the same shape, of an equation that normal forms prove.
     relations : sequence of Expr or Eq
         The hypotheses of the equation.
 
@@ -58,7 +58,8 @@ def chains(left: Any, right: Any, relations: Sequence[Any] = ()) -> tuple[Chain,
     InputError
         If the sides cannot be read.
     ValueError
-        If the sides are not equal.
+        If the normal form of left - right is not zero, as for sides that are equal for another reason, such as
+        ``asin(x) + acos(x)`` and pi/2.
     """
     (lefts, shape), (rights, _) = flatten(left), flatten(right)
     hypotheses = [as_zero(relation) for relation in relations]

@@ -77,6 +77,9 @@ def event_array(number: int, quantity: str) -> str:
 def labelled(trajectory: Any, names: Sequence[str] | None = None) -> list[Labelled]:
     """Return the time and the quantities ``names`` of a trajectory with labels, for tables and files.
 
+    By default (None), they are the output quantities of the scene, and the derivatives if there are any. After
+    ``euler`` comes :data:`LOCK`, which says where the Euler angles are at gimbal lock.
+
     Raises
     ------
     InputError
@@ -84,7 +87,6 @@ def labelled(trajectory: Any, names: Sequence[str] | None = None) -> list[Labell
     """
     output, derivatives = trajectory.scene.output, _derivatives(trajectory)
     quantities = [Labelled("t", trajectory.t, ("t",), "s", "", "time")]
-    # the default: the scene's output quantities, and derivatives if the trajectory has them
     chosen = output.quantities if names is None else (names,) if isinstance(names, str) else names
     for name in chosen:
         if name in derivatives:

@@ -8,11 +8,13 @@ from typing import Any
 import numpy as np
 from numpy.typing import NDArray
 
-from symrot.errors import InputError
+from symrot.errors import InputError, with_hint
+from symrot.formula.exact_numbers import show
 from symrot.kinematics import conversions
 from symrot.results import tables
 from symrot.results.labels import About, Labelled, about, labelled
 from symrot.scene.scene import Scene
+from symrot.scene.tables import QUANTITIES
 
 __all__ = ["MotionSamples", "Samples"]
 
@@ -105,8 +107,8 @@ class Samples(ABC):
         Returns
         -------
         pandas.DataFrame
-            The index is ``t``, s. ``attrs["units"]``, ``attrs["frames"]`` and ``attrs["meanings"]`` describe the
-            columns.
+            The index is ``t``, s; for an ensemble, ``(trajectory, t)``. ``attrs["units"]``, ``attrs["frames"]`` and
+            ``attrs["meanings"]`` describe the columns.
 
         Raises
         ------
@@ -126,8 +128,8 @@ class Samples(ABC):
         Returns
         -------
         xarray.Dataset
-            The dimensions are ``time`` and the axes of the quantity, such as ``body_axis``. Each variable has the
-            attributes ``units``, ``long_name`` and ``frame``.
+            The dimensions are ``time`` and the axes of the quantity, such as ``body_axis``; for an ensemble,
+            ``trajectory`` comes first. Each variable has the attributes ``units``, ``long_name`` and ``frame``.
 
         Raises
         ------
@@ -177,7 +179,7 @@ class MotionSamples(Samples):
 
     @cached_property
     def axis(self) -> Floats:
-        """Direction of the symmetry axis (without one: of the third body axis), space components, shape (..., 3)."""
+        """Direction of the body axis number :attr:`axis_number`, space components, shape (..., 3)."""
         return conversions.quaternion_to_axis(self.quaternion, self.axis_number)
 
     def _labelled(self, quantities: Sequence[str] | None = None) -> list[Labelled]:
@@ -201,5 +203,8 @@ class MotionSamples(Samples):
                     'euler: expected an Euler sequence, such as "ZXZ", as output.sequence of the scene, got none'
                 )
             return self.euler(output.sequence, degrees=output.degrees)
+        if name not in QUANTITIES:
+            message = f"quantity: expected one of {', '.join(QUANTITIES)}, got {show(name)}"
+            raise InputError(with_hint(message, name, QUANTITIES))
         value: Floats = getattr(self, name)
         return value

@@ -168,7 +168,7 @@ class Sensitivities(Mapping[str, Sensitivity]):
         """Return the derivatives with labels, for tables.
 
         There are three quantities for each variable, such as ``omega_by_weight``, ``quaternion_by_weight`` and
-        ``rotation_by_weight``.
+        ``rotation_by_weight``; for samples at the times of an event also ``t_by_weight``.
         """
         items = []
         for number, (variable, unit) in enumerate(zip(self.variables, self.units, strict=True)):

@@ -30,7 +30,8 @@ Matrix = tuple[Vector, Vector, Vector]
 class Attitude(NamedTuple):
     """An attitude in a scene, as a unit quaternion (scalar first, body to space) and as the matrix ``dcm_sb``.
 
-    The matrix is exact if the sines and cosines of the angles in the scene are rational.
+    The matrix is exact if the sines and cosines of the angles in the scene, and the length of an axis, are rational.
+    A matrix given in a scene is replaced by that of its quaternion.
     """
 
     quaternion: Quaternion
@@ -193,9 +194,9 @@ _FORMS: dict[str, Callable[[Mapping[str, Any], str], Attitude]] = {
 
 
 def _by_shape(value: Any) -> Any:
-    """Return an attitude as a table: the list ``[1, 0, 0, 0]`` gives ``{"quaternion": [1, 0, 0, 0]}``.
+    """Return an attitude that is a list as a table: ``[1, 0, 0, 0]`` gives ``{"quaternion": [1, 0, 0, 0]}``.
 
-    Values that are not such lists are returned unchanged.
+    The list is a quaternion, the three rows of a matrix, or a sequence with its angles. Other values stay unchanged.
     """
     match value:
         case [str(sequence), list() as angles]:

@@ -69,11 +69,12 @@ class Body(NamedTuple):
     about : str
         The point of rotation: ``"center_of_mass"`` or ``"fixed_point"``.
     description : str
-        Name of the body in the scene, or a short description such as ``"cuboid"``.
+        Name of the body in the scene, or a short description such as ``"cuboid"``. For a body given by moments it says
+        so in addition: ``"wheel with given principal moments"``.
     principal : Principal
         Symmetry class of the body, principal moments, kg m^2, and principal axes.
     parts : tuple of Part
-        The shapes of which the body consists, for pictures; empty if only its inertia is known.
+        The shapes of which the body consists, for pictures; empty for a mesh, or if only the inertia is known.
     origin : tuple of 3 Fraction
         The point of rotation, m, in the axes in which the parts or facets are placed.
     facets : tuple of triangles
@@ -267,7 +268,8 @@ def _amount(shape: Shape) -> dict[str, Entry]:
 def _density(unit: str) -> Reader:
     """Return a reader for densities in ``unit``: a positive number, or a polynomial in x, y, z.
 
-    The reader returns a number as a Fraction, a polynomial as its text.
+    The reader returns a number as a Fraction, and a formula in x, y, z as its text. Whether the formula is a polynomial
+    is checked later, when the mass is computed.
     """
     uniform = number(f"a density in {unit}", "positive")
 
@@ -285,7 +287,7 @@ def _density(unit: str) -> Reader:
 def _read_shape_table(value: Mapping[str, Any], where: str, others: Mapping[str, Entry]) -> tuple[Part, dict[str, Any]]:
     """Return the shape in a table such as ``{shape = "sphere", radius = 1, mass = 2}``, and all values of the table.
 
-    ``others`` are further keys that the table may have, such as ``name``.
+    ``others`` are further keys that the table may have, such as ``name``, with their rules.
     """
     if "shape" not in value:
         fail(f"{where}.shape", f"one of the shapes {', '.join(SHAPES)}; the key is missing")
@@ -295,7 +297,6 @@ def _read_shape_table(value: Mapping[str, Any], where: str, others: Mapping[str,
         "shape": Entry(_shape_name, required=True),
         **{name: Entry(unchanged, required=True) for name in dimensions},
         **_amount(shape),
-        # keys that do not describe the shape, such as name
         **others,
     }, f"a {shape.name}")  # fmt: skip
     amounts = [key for key in ("mass", "density") if values.get(key) is not None]

@@ -94,7 +94,8 @@ def changed(scene: SceneContent, changes: Mapping[str, Any]) -> Content:
     Raises
     ------
     InputError
-        If a key names nothing in the scene, or several things.
+        If a key names nothing in the scene, or both a constant of a torque and a dimension of the body, or if the scene
+        has no place for the value.
     """
     result = scene._replace(content=deepcopy(scene.content))
     for key, value in changes.items():
@@ -138,9 +139,9 @@ def present_value(scene: SceneContent, key: str) -> Any:
 
 
 def number_path(scene: SceneContent, key: str) -> Path:
-    """Return the path of the number that a key names: ``"linear"`` gives ``("torque", 0, "linear")``.
+    """Return the path of the number or text that a key names: ``"linear"`` gives ``("torque", 0, "linear")``.
 
-    The path is empty if the key names no single number, for instance a vector or a component of one.
+    The path is empty if the key names nothing, a table, a list, true or false, or one component of a vector.
     """
     try:
         place = _place(scene, key)
@@ -243,7 +244,8 @@ def _set(scene: SceneContent, key: str, value: Any) -> None:
 def _place(scene: SceneContent, key: str) -> Place:
     """Return the place in the scene's content of the value that ``key`` names, such as ``omega_2`` or ``body.mass``.
 
-    A key that names nothing, or more than one value, raises InputError.
+    The name of a constant that several torques have means that of the first one. InputError is raised for an unknown
+    name, or for one that a torque and the body share; a path is not checked beyond its first key.
     """
     if not isinstance(key, str):
         raise InputError(f"expected the name of a value of the scene, such as 'body.mass', got {show(key)}")

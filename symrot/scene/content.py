@@ -27,7 +27,8 @@ _BARE_KEY = re.compile(r"[A-Za-z0-9_-]+")
 def plain(value: Any, where: str, depth: int = 0) -> Any:
     """Convert a Python value to the form of a scene file.
 
-    An array or a matrix of SymPy becomes a list, a rotation of SciPy a quaternion, an expression of SymPy a formula.
+    An array or a matrix of SymPy becomes a list, a rotation of SciPy a quaternion, an expression of SymPy with symbols
+    a formula. Other values stay unchanged.
 
     Raises
     ------

@@ -10,13 +10,15 @@ __all__ = ["Folders"]
 
 
 class Folders(NamedTuple):
-    """The folder of a scene, and further folders that the user allows; a scene may name only files in these folders."""
+    """The folder of a scene, and further folders that the user allows; a scene may name only files in or below them."""
 
     folder: Path = Path()
     others: str | Path | Sequence[str | Path] = ()
 
     def file(self, name: str, where: str, what: str) -> Path:
-        """Return the path of a file that a scene names; raise InputError if it is outside the allowed folders.
+        """Return the path of a file that a scene names, existing or not.
+
+        Raise InputError if the path is outside the allowed folders, or if the name is empty or has a backslash.
 
         Parameters
         ----------

@@ -49,7 +49,8 @@ def read_mesh_table(
     Raises
     ------
     InputError
-        If a key is unknown or has a wrong value, or if the mesh is not the boundary of a body.
+        If a key is unknown or has a wrong value, the file is outside these folders or cannot be read, or the mesh is
+        not the boundary of a body.
     """
     from symrot.exchange.mesh import read_mesh  # with NumPy, which other bodies do not need
 

@@ -32,7 +32,8 @@ __all__ = [
 Reader = Callable[[Any, str], Any]
 
 LARGEST = Fraction(10) ** 100
-"""Largest magnitude of a quantity in a scene; the smallest is its inverse. Products are then finite doubles."""
+"""Largest magnitude of a quantity in a scene; the smallest is its inverse. Products of three are then finite doubles.
+"""
 
 
 class Entry(NamedTuple):

@@ -126,8 +126,9 @@ def read_samples(
     Raises
     ------
     InputError
-        If a key is unknown, the file is in another folder or cannot be read, or the samples are not numbers, are too
-        few, are not in order, or do not cover the span.
+        If a key is unknown, the samples are given neither by ``t`` and ``moment`` nor by a file, the file is in another
+        folder or cannot be read, or the samples are not numbers, are too few or too many, are not in order, or do not
+        cover the span.
     """
     values = read_table(value, where, _ENTRIES, "a torque of kind table")
     written = [key for key in ("t", "moment") if values[key] is not None]
@@ -159,7 +160,10 @@ def read_samples(
 
 
 def _check(times: tuple[float, ...], switching: tuple[float, ...], place: str, rows: int) -> None:
-    """Raise InputError unless the times increase, with two samples or more between consecutive switching times."""
+    """Raise InputError unless the times increase; only one of ``switching``, the switching times, may occur twice.
+
+    There must be two samples or more before, between and after the times that occur twice.
+    """
     if len(times) < 2:
         fail(place, f"two samples or more, got {len(times)}")
     length = 1
@@ -167,7 +171,6 @@ def _check(times: tuple[float, ...], switching: tuple[float, ...], place: str, r
         at = f"{place}, line {index + rows}" if rows else f"{place}[{index}]"
         if after < before:
             fail(at, f"increasing times, got {after!r} s after {before!r} s")
-        # a switching time occurs twice: for the torque before the jump and after it
         if after == before and after not in switching:
             fail(at, "increasing times; only a switching time may occur twice, for the samples before and after the "
                      f"jump, got {after!r} s twice")  # fmt: skip

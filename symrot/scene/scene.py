@@ -153,7 +153,8 @@ class Scene:
     def to_dict(self) -> dict[str, Any]:
         """Return the content of the scene file or dict from which the scene was read, with all changes since then.
 
-        The result is a copy without name and path; ``Scene.from_dict`` reads it as a scene that is equal otherwise.
+        The result is a copy without name and path; ``Scene.from_dict`` reads it as a scene that is equal otherwise, but
+        for a title that follows from the name. It looks for files of meshes and samples in the current folder.
 
         Raises
         ------
@@ -346,7 +347,8 @@ def load_scene(source: SceneSource, *, table_folders: str | Path | Sequence[str 
     Raises
     ------
     InputError
-        If the file is not a valid scene; the message names file, key, expectation and value.
+        If there is no such scene or file, or if it is not a valid scene; the message then names file, key, expectation
+        and value.
 
     Notes
     -----

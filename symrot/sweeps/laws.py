@@ -95,7 +95,8 @@ def read_law(law: object, where: str) -> Law:
     ----------
     law : str, or sequence of numbers
         ``normal(mean, deviation)``, ``uniform(low, high)``, ``loguniform(low, high)``, ``linspace(first, last,
-        count)``, ``geomspace(first, last, count)``, ``values(a, b, ...)``, or the values of a grid as a sequence.
+        count)``, ``geomspace(first, last, count)``, ``values(a, b, ...)``, or the values of a grid as a sequence. A law
+        is returned unchanged.
     where : str
         Name of the value that varies, for error messages.
 
@@ -164,7 +165,11 @@ def _grid(name: str, numbers: tuple[float, ...], law: str, where: str) -> Grid:
     if len(numbers) != 3 or numbers[2] != int(numbers[2]) or not 1 <= numbers[2] <= MOST_GRID_VALUES:
         raise InputError(f"{expected}, got {show(law)}")
     first, last, count = numbers[0], numbers[1], int(numbers[2])
-    if name == "geomspace" and not first * last > 0:
+    if name == "geomspace" and not (min(first, last) > 0 or max(first, last) < 0):
         raise InputError(f"{where}: expected {GRIDS[name]}, with first and last of the same sign, got {show(law)}")
     space = np.linspace if name == "linspace" else np.geomspace
-    return Grid(tuple(space(first, last, count).tolist()))
+    with np.errstate(over="ignore", invalid="ignore"):
+        values = space(first, last, count)
+    if not np.isfinite(values).all():
+        raise InputError(f"{where}: expected {GRIDS[name]} with a range within that of a double, got {show(law)}")
+    return Grid(tuple(values.tolist()))

@@ -40,7 +40,8 @@ UNAVERAGED = {
     "euler": "angles jump by 360 degrees, and the mean of 179 and -179 degrees is not 0",
     "quaternion": "q and -q are one attitude",
 }
-"""Quantity -> why its components have no mean and no percentiles."""
+"""Quantity -> why its components have no mean and no percentiles over trajectories; angles have no mean over time too.
+"""
 
 REDUCTIONS: dict[str, tuple[str, Callable[[Floats], Floats]]] = {
     "min": ("smallest value among the samples", lambda values: values.min(axis=1)),
@@ -81,7 +82,10 @@ def _components(output: Output) -> dict[str, tuple[str, int]]:
 
 
 def scene_for(scene: Scene, texts: Sequence[str]) -> Scene:
-    """Return the scene with the Euler sequence in the outputs ``texts``, if any: ZYX for ``euler_ZYX_1@end``."""
+    """Return the scene with the Euler sequence in the outputs ``texts``: ZYX, in rad, for ``euler_ZYX_1@end``.
+
+    The scene is unchanged if the outputs have no sequence or that of the scene. Raise InputError for two sequences.
+    """
     from dataclasses import replace
 
     sequences = []
@@ -115,7 +119,8 @@ def read_outputs(texts: Sequence[str], scene: Scene, times: Floats) -> tuple[Swe
     Raises
     ------
     InputError
-        If a name or a reduction is unknown, or if an output occurs twice.
+        If a name or a reduction is unknown, a time is outside the sample times, an output occurs twice, or there is
+        none.
     """
     outputs = [output for text in texts for output in _read(text, scene, times)]
     names = [output.name for output in outputs]

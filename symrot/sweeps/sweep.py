@@ -158,7 +158,8 @@ def sweep(
 ) -> Sweep:
     """Propagate many motions of a scene with varied values, and store chosen outputs of each motion.
 
-    The results have the same bits for any number of workers; the same call continues an interrupted sweep.
+    The results have the same bits for any number of workers. The same call with a ``path`` continues an interrupted
+    sweep.
 
     Parameters
     ----------
@@ -179,7 +180,8 @@ def sweep(
         Number of trajectories, a multiple of the number of grid points. It is needed if values are drawn; otherwise it
         is the number of grid points.
     seed : int
-        Seed of the draws. The draws of a trajectory depend only on the seed and on its index.
+        Seed of the draws. The draws of a trajectory do not depend on workers and chunks, nor on ``count`` unless the
+        sampling is ``"latin"``.
     outputs : str or sequence of str
         Quantities or components, such as ``"energy"`` at all sample times, ``"omega_1@end"``, ``"axis_z@2.5"`` (at
         2.5 s), ``"omega_3@max"``; also ``@start``, ``@min`` and ``@mean``.
@@ -323,13 +325,16 @@ def _whole(value: object, where: str, most: int) -> None:
 
 
 def _target(path: str | Path, keep: str) -> Path:
-    """Return the path of the file to write; raise InputError for an unknown ending or a missing folder."""
+    """Return the path of the file to write.
+
+    Raise InputError for an unknown ending, a missing folder, or a Parquet file with ``keep`` = ``"statistics"``: values
+    cannot be removed from it.
+    """
     target = Path(path)
     if target.suffix.lower() not in STORES:
         raise InputError(f"-o: expected a name that ends in {', '.join(STORES)}, got {str(path)!r}")
     if not target.parent.is_dir():
         raise InputError(f"-o: expected a name in an existing folder, got {str(path)!r}")
-    # values cannot be removed from a Parquet file
     if target.suffix.lower() != ".zarr" and keep == "statistics":
         raise InputError(
             f"-o: expected a name that ends in .zarr for keep = statistics, which stores no values of single motions, "
@@ -394,7 +399,7 @@ def _require_derivatives(scene: Scene, content: Content | None, design: Design, 
 
 
 def _content(scene: Scene) -> Content | None:
-    """Return the content of the file or dict from which a scene was read; None if the scene was changed later."""
+    """Return the content of a scene's file or dict; None if the scene's body or torques were replaced later."""
     try:
         return scene.to_dict()
     except InputError:  # only values of its constants can vary

@@ -56,7 +56,7 @@ def patches(body: Body) -> list[Patch]:
     Parameters
     ----------
     body : Body
-        A body of parts, or one of which only the inertia is known.
+        A body of parts, one given by a mesh, or one of which only the inertia is known, which becomes a box.
 
     Returns
     -------
@@ -128,12 +128,12 @@ def _moved(rotation: Sequence[Sequence[Fraction]], point: Sequence[float], offse
 
 
 def _faces(shape: Shape) -> Iterator[tuple[dict[str, str], tuple[Coordinate, ...]]]:
-    """Yield for each face of a shape the coordinate that is constant on it, with its value, and the other
-    coordinates.
+    """Yield for each face of a shape a map from the coordinate that is constant on it to its value, and the others.
+
+    The ends of an angle from 0 to 2 pi are no faces. A shape with fewer than three coordinates is a face itself.
     """
     coordinates = shape.coordinates
     if len(coordinates) < 3:
-        # a shape with fewer than three coordinates is a surface itself
         yield {}, coordinates
         return
     for coordinate in coordinates:
@@ -173,8 +173,9 @@ def _value(text: str, values: Mapping[str, float]) -> float:
 
 
 def _about_its_center(body: Body) -> tuple[Principal, float, Point] | None:
-    """Return the principal moments about the centre of mass, the mass and the centre; None if the scene does not give
-    them.
+    """Return the principal moments about the centre of mass, the mass and the centre.
+
+    Return None if the scene does not give mass and centre, or if no body can have these moments.
     """
     if body.mass is None or body.center_of_mass is None:
         return None

@@ -203,8 +203,9 @@ def _facts(scene: Scene, is_driven: bool) -> dict[str, Any]:
 
 
 def _orbit(scene: Scene) -> dict[str, Any] | None:
-    """Return a satellite's mean motion, rad/s, and the body axis of its least moment; None without a gravity
-    gradient.
+    """Return a satellite's mean motion, rad/s, and the body axis of its least moment.
+
+    Return None unless the scene has exactly one torque of a gravity gradient.
     """
     torques = [torque for torque in scene.torques if torque.kind == "gravity_gradient"]
     if len(torques) != 1:

@@ -6,6 +6,7 @@ from fractions import Fraction
 from pathlib import Path
 
 import pytest
+from sympy import symbols
 
 from symrot.certificates.laws.equality import prove_equal
 from symrot.certificates.readback.intended_constants import intended_value, rounds_to
@@ -13,6 +14,7 @@ from symrot.certificates.readback.readback import read_kernel
 from symrot.errors import CertificateError
 from symrot.formula.exact_numbers import PI
 from symrot.kernels.library import definition, kernel_names
+from symrot.kernels.removable import sine_gap
 
 GENERATED = Path(__file__).parents[2] / "generated" / "c"
 SLICE = ("quaternion_dcm", "quaternion_of_dcm", "euler_zyx_body_rates", "euler_zxz_of_quaternion",
@@ -48,6 +50,25 @@ def test_the_c_text_is_the_formula(name, suffix):
 def test_every_c_text_is_its_formula(name):
     for suffix in ("", "f"):
         proven(name, text_of(name), suffix)
+
+
+SHARED = """static inline double symrot_sine_gap(double x)
+{
+    return x*x < 0.25 ? 0.16666666666666666 + x*x*-0.008333333333333333 : (x - sin(x))/(x*x*x);
+}
+void gap(const double a[2], double b[1])
+{
+    b[0] = symrot_sine_gap(a[0]) + a[1]*0.16666666666666666;
+}
+"""
+
+
+def test_a_constant_of_a_series_counts_outside_the_series_too():
+    x, y = symbols("x y", real=True)
+    operations, places = read_kernel(SHARED, "gap"), {"a[0]": "x", "a[1]": "y"}
+    prove_equal(operations, places, {"b[0]": sine_gap(x) + y / 6})
+    with pytest.raises(CertificateError, match="computes another value"):
+        prove_equal(operations, places, {"b[0]": sine_gap(x)})
 
 
 SWAPS = {"+": "-", "-": "+", "*": "/", "/": "*", "sin": "cos", "cos": "sin", "0.5": "0.25", "2.0": "3.0", "[0]": "[1]",

@@ -33,6 +33,12 @@ KERNELS = Path(__file__).parents[2] / "generated" / "c"
         ("-fno-signed-zeros -ffp-contract=off", NOTHING),
         ("-mfpmath=387 -ffp-contract=off", NOTHING),
         ("-m32 -ffp-contract=off", NOTHING),
+        ("-m32 -m64 -ffp-contract=off", BITS),
+        ("-m32 -mfpmath=sse -ffp-contract=off", NOTHING),  # gcc: SSE instruction set disabled, using 387 arithmetics
+        ("-m32 -msse2 -mfpmath=sse -ffp-contract=off", BITS),
+        ("-mfpmath=387 -m64 -ffp-contract=off", NOTHING),  # gcc has FLT_EVAL_METHOD 2
+        ("-mno-sse2 -m64 -ffp-contract=off", NOTHING),
+        ("-mno-sse2 -mfpmath=sse -ffp-contract=off", NOTHING),
         ("-fdenormal-fp-math=preserve-sign -ffp-contract=off", NOTHING),
         ("-fsingle-precision-constant -ffp-contract=off", NOTHING),
         ("-ffp-model=precise", BOUNDS),
@@ -61,7 +67,7 @@ def test_a_flag_or_a_compiler_that_nobody_knows_is_refused_in_one_sentence(flag)
     ("flags", "holds"),
     [("/usr/bin/x86_64-linux-gnu-gcc-12 -ffp-contract=off -DMY_APP=1 main.c kernel.c -o main", BITS),
      ("ccache clang++-14 -O2 -ffp-contract=off", BITS), ("C:\\\\gcc.exe -O2", BOUNDS), ("kernel.c -ffp-contract=off", BITS),
-     ("i686-linux-gnu-gcc -O2 -ffp-contract=off", NOTHING), ("i686-linux-gnu-gcc -mfpmath=sse -ffp-contract=off", BITS)],
+     ("i686-linux-gnu-gcc -O2 -ffp-contract=off", NOTHING), ("i686-linux-gnu-gcc -msse2 -mfpmath=sse -ffp-contract=off", BITS)],
 )  # fmt: skip
 def test_compilers_are_known_by_their_names(flags, holds):
     """A compiler for a processor with x87 keeps more digits than the type has, unless SSE2 is requested."""

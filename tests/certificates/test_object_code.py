@@ -177,6 +177,8 @@ STRANGE = (
     (UPPER.replace("xmm18,xmm18,", "xmm18{{k1}},xmm18,").format(""), NOT_UNDERSTOOD, "expected an instruction whose effect is known, got another"),
     (UPPER.replace("xmm18,xmm18,xmm17", "xmm18,xmm18,xmm17,{{ru-sae}}").format(""), NOT_UNDERSTOOD, "expected an instruction whose effect is known, got another"),
     (UPPER.replace("vaddsd", "vsubsd").format(""), DIFFERS, "the object code"),
+    (GOOD.rpartition(";")[0] + "; pcmpeqd xmm3,xmm3; pxor xmm4,xmm4; psllq xmm3,xmm4; andnpd xmm3,xmm1; "
+     "movsd QWORD PTR [rsi],xmm3; ret", NOT_UNDERSTOOD, "got a variable shift"),
     ("movsd xmm0,QWORD PTR [rdi]; movsd xmm1,QWORD PTR [rdi+8]; vfmadd213sd xmm1,xmm0,xmm0; movsd QWORD PTR [rsi],xmm1; ret",
      CONTRACTED, ""),
 )  # fmt: skip

@@ -100,6 +100,7 @@ def test_functions_of_the_file_and_choices_are_read():
         ("cos(t)", "cos(t, t)", "function of <math.h>"),
         ("y[1] -", "y[2] -", "below 2"),
         ("dy[1]", "dy[0]", "one assignment"),
+        ("dy[1]", "dy[01]", "an index"),  # octal in C
         ("dy[1] =", "dy[1] +=", "'='"),
         ("    dy[1] = -(a - 2.0)*cos(t);\n", "", "assign dy[1]"),
         ("2.0", "2", "literal of type double"),

@@ -81,6 +81,15 @@ def test_halves_round_either_way(tmp_path):
     assert symrot.check_file(path)[0].verdict == "true"
 
 
+@pytest.mark.parametrize(("value", "shown"), [
+    ("10^400*sqrt(2)", "1.41421356237e+400"), ("sqrt(2)/10^400", "1.41421356237e-400"), ("sqrt(2)", "1.41421356237"),
+])  # fmt: skip
+def test_a_value_beyond_the_range_of_floats_is_written_with_its_power_of_ten(value, shown, tmp_path):
+    text = f'schema = 1\n[[claim]]\nid = "a"\nvalue = "{value}"\nprinted_value = "3"\n'
+    (verdict,) = symrot.check_file(write(tmp_path, text))
+    assert verdict.verdict == "false" and f" = {shown}.. " in str(verdict.counterexample)
+
+
 FAULTS = (
     ("schema = 1", "schema = 2", "schema = 1"),
     ("schema = 1", "", "schema = 1"),
@@ -105,6 +114,7 @@ FAULTS = (
     ('printed_value = "2.96"', 'printed_value = "about 3"', "decimal"),
     ('printed_value = "2.96"', f'printed_value = "2.{"9" * 5000}"', "at most 200 characters"),
     ('printed_value = "2.96"', "", "printed_value"),
+    ('value = "2*pi', 'value = "[1, 2]*pi', "expected a number, got a 2 x 1 matrix"),
     ('value = "2*pi', 'symbols = ["x"]\nvalue = "2*x*pi', "expected a number"),
     ("[[claim]]", "[[clam]]", "claim"),
     ("schema = 1", "schema = ", "TOML"),

@@ -108,7 +108,7 @@ def _with_campaign(few, *cases):
 
 @pytest.mark.parametrize(("text", "body", "words"), _with_campaign(
     [("I_xx = m (3 R^2 + 4 L^2)/12", "solid cylinder about the centre of a hole", "hole"),
-     ("I = m r^2/2", "half cylinder", "half")],
+     ("I = m r^2/2", "half cylinder", "half"), ("I = m r^2/2", "disk of diameter d/0", "d/0")],
     ("I = 2/5 m r^2", "thin sphere", "thin"),
     ("I = m L^2/12", "rod of variable density", "variable"),
     ("I = m r^2/2", "disk with a hole of radius r/2", "hole"),

@@ -84,6 +84,12 @@ def test_a_counterexample_obeys_the_hypotheses(claim, given):
     assert abs(left - right) > 1e-10
 
 
+def test_a_hypothesis_beyond_double_precision_is_obeyed():
+    verdict = symrot.check("x*y == 1", assume=["x*10**308*10**308 == 1"])
+    assert verdict.verdict == "false"
+    assert verdict.counterexample.values["x"] == f"1/1{'0' * 616}"
+
+
 def test_points_that_need_a_root_of_higher_degree_name_it():
     shown = symrot.check("x == y", assume=["x**2 + y**2 == 1", "x*y == 1/3"], repair=False).counterexample
     assert shown.values["root"].startswith("CRootOf(")

@@ -5,6 +5,9 @@ import json
 import pytest
 
 import symrot
+from symrot.checker.recognition.formulas.kinematics import GYROSCOPE, OF_ONE_ENTRY
+from symrot.checker.recognition.formulas.points import ANY_VECTORS, GENERAL
+from symrot.checker.recognition.known_formulas import SCALAR_PRODUCTS, by_fingerprint
 from symrot.cli.main import main
 from symrot.errors import InputError
 
@@ -69,6 +72,20 @@ def test_a_right_formula_is_recognised_in_its_usual_reading_first(claim, name):
     assert not verdict.repairs and verdict.diagnosis.code == "none" and verdict.counterexample is None
 
 
+def test_a_negative_root_is_recognised_only_for_a_quantity_with_a_sign():
+    assert symrot.check("omega = -sqrt(omega_0^2 + 2*alpha*theta)").verdict == "recognised"
+    assert symrot.check("q0 = -sqrt(1 + R_11 + R_22 + R_33)/2").verdict == "recognised"
+    for positive in ("k = sqrt((a^2 + b^2)/12)", "T = 2*pi*sqrt(L/g)"):
+        verdict = symrot.check(positive.replace("= ", "= -"))
+        assert verdict.verdict in ("doubtful", "definition")
+        assert symrot.check(positive).verdict == "recognised"
+
+
+def test_a_sine_or_cosine_of_zero_is_read():
+    assert symrot.check("I_zz = m*a^2*cos(0)*cos(b)").verdict == "definition"
+    assert symrot.check("T = m*v^2/2*cos(x - x)*sin(b)").verdict == "definition"
+
+
 WRONG = (
     (r"\omega_x = \dot\phi \sin\theta \sin\psi - \dot\theta \cos\psi", "sign_of_term",
      "first component of the angular velocity of ZXZ in the body frame"),
@@ -101,6 +118,7 @@ def test_a_formula_with_one_fault_is_doubtful_and_repaired(claim, code, name):
 @pytest.mark.parametrize("claim", [
     "L = I α", "y == p*s + s**3 + exp(u)", "y == sin(2*x)", "M == Matrix([[cos(a), sin(a)], [sin(a), cos(a)]])", "x == 5",
     "Omega == a*g*b/(c*d)", "omega == v/r", "k == J/m", "I_0 == C*omega_3", "x == C*omega_3", "y == m*g/r",
+    "K == (p_x*v_x + p_y*v_y + p_z*v_z)/2",
 ])  # fmt: skip
 def test_any_other_formula_may_be_a_definition(claim):
     verdict = symrot.check(claim)
@@ -348,3 +366,8 @@ def test_an_inverse_function_limits_the_angle(claim, note):
     """The verdict names the range in which the inverse function gives the angle."""
     verdict = symrot.check(claim)
     assert verdict.verdict == "recognised" and note in verdict.notes
+
+
+def test_every_formula_that_only_its_letters_name_is_a_known_formula():
+    names = {known.name for formulas in by_fingerprint().values() for known in formulas if known.only_named}
+    assert {*SCALAR_PRODUCTS, *ANY_VECTORS, *GENERAL, *OF_ONE_ENTRY, GYROSCOPE} <= names

@@ -30,6 +30,12 @@ def test_a_wrong_digit_is_false_with_the_right_one(claim, right):
     assert symrot.check(right).verdict == "true"
 
 
+@pytest.mark.parametrize("claim", ["2*pi == 6.28*10^400", "pi*10^400 == 3.15*10^400", "pi*10^-400 == 3.15*10^-400"])
+def test_a_wrong_digit_beyond_double_precision_is_false(claim):
+    assert symrot.check(claim).verdict == "false"
+    assert symrot.check("pi*10^400 == 3.14*10^400").verdict == "true"
+
+
 def test_a_number_without_a_point_and_a_formula_with_symbols_are_compared_exactly():
     assert symrot.check("pi == 3").verdict == "false"
     assert symrot.check("x/3 == 0.333*x").verdict == "false"

@@ -81,6 +81,11 @@ def test_each_motion_runs_the_constructor_of_its_base():
         assert constructor is None or "super().__init__(" in inspect.getsource(constructor), each.__name__
 
 
+def test_an_unknown_quantity_is_refused_with_a_hint():
+    with pytest.raises(InputError, match=r"quantity: expected one of omega, .* got 'enrgy' \(did you mean 'energy'"):
+        symrot.propagate("t_handle").quantity("enrgy")
+
+
 def test_euler_angles_need_a_sequence():
     trajectory = symrot.propagate("t_handle")
     with pytest.raises(InputError, match=r"expected an Euler sequence, such as .ZXZ., as output\.sequence"):

@@ -28,6 +28,8 @@ def test_quantiles_are_those_of_scipy(text, name, parameters):
     [
         ("linspace(1, 2, 3)", (1.0, 1.5, 2.0)),
         ("geomspace(1, 100, 3)", (1.0, 10.0, 100.0)),
+        ("geomspace(1e-200, 1e-180, 3)", (1e-200, 1e-190, 1e-180)),
+        ("geomspace(-1e-200, -1e-180, 3)", (-1e-200, -1e-190, -1e-180)),
         ("values(1/4, (1 + 1)*2)", (0.25, 4.0)),
         ([1, "1/2"], (1.0, 0.5)),
         (np.array([3.0]), (3.0,)),
@@ -47,6 +49,8 @@ def test_grids_list_their_values(law, values):
         ("loguniform(0, 1)", "0 < low < high"),
         ("linspace(0, 1, 2.5)", "with a whole number"),
         ("geomspace(-1, 1, 3)", "of the same sign"),
+        ("geomspace(0, 1, 3)", "of the same sign"),
+        ("linspace(-1e308, 1e308, 3)", "a range within that of a double"),
         ("values()", "a number"),
         ("normal(0, x)", "x: expected a number, got ' x'"),
         ([], "x: expected 1 to"),

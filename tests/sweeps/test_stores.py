@@ -108,6 +108,14 @@ def test_pandas_and_xarray_show_units(tmp_path):
     assert mean == float(xarray.open_zarr(tmp_path / "a.zarr").omega_1_mean[1])
 
 
+@pytest.mark.parametrize("name", [None, *NAMES])
+def test_statistics_have_one_value_for_each_of_equal_sample_times(tmp_path, name):
+    path = None if name is None else tmp_path / name
+    result = sweep(path=path, outputs="energy", t=[0.0, 0.5, 0.5], statistics=["mean", "percentiles(5, 50)"])
+    mean, percentiles = result.array("energy_mean"), result.array("energy_percentile")
+    assert mean.shape == (3,) and percentiles.shape == (2, 3) and mean[1] == mean[2]
+
+
 class Stop(Exception):
     pass
 

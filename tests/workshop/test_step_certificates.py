@@ -400,10 +400,20 @@ def _other_entry(section, name, value=1):
     (_smaller_truncation, "expected the bounds that symrot computes"), (_smaller_rounding, "expected"),
     (_other_rates, "expected next"), (_other_order, "expected the order|expected next"), (_other_text, "an edited one"),
     (_other_parameter, "the parameters that the certificate states"),
+    (_other_entry("", "step", []), "a method that symrot knows"), (_other_entry("", "step", None), "that symrot knows"),
+    (_other_entry("", "step", {"method": "rk4"}), "a method that symrot knows: 'order'"),
+    (_other_entry("step", "jacobian", [1]), "a method that symrot knows: 'jacobian' is no list of names"),
 ])  # fmt: skip
 def test_forged_certificates_are_refused(certified, tmp_path, change, message):
     with pytest.raises(CertificateError, match=message):
         symrot.audit(forged(certified, tmp_path, change))
+
+
+def test_a_certificate_in_another_encoding_is_refused(certified, tmp_path):
+    path = forged(certified, tmp_path, lambda data, folder: None)
+    path.write_bytes(path.read_text("utf-8").encode("utf-16"))
+    with pytest.raises(CertificateError, match="as symrot prints it, got one that was edited"):
+        symrot.audit(path)
 
 
 def test_the_rates_in_a_certificate_are_those_of_the_scene():

@@ -96,7 +96,10 @@ def _power(expression: Pow) -> tuple[str, int]:
 
 
 def folded(text: str, indent: int = 0) -> str:
-    """Return a text in lines of at most :data:`WIDTH` characters; later lines are indented by ``indent`` blanks."""
+    """Return a text in lines of at most :data:`WIDTH` characters, unless one word is longer.
+
+    All lines but the first are indented by ``indent`` blanks.
+    """
     return fill(text, WIDTH, subsequent_indent=" " * indent, break_long_words=False, break_on_hyphens=False)
 
 
@@ -106,7 +109,10 @@ def comment(text: str) -> str:
 
 
 def _record(formulas: Sequence[Expr]) -> str:
-    """Return formulas as Coq text of one vector, quaternion or matrix (row by row); a single formula gives a number."""
+    """Return the Coq text of one number, vector, quaternion or matrix that has ``formulas`` as components.
+
+    A matrix has nine formulas, row by row, or six if it is symmetric: the components xx, yy, zz, xy, xz and yz.
+    """
     if len(formulas) == 1:
         return folded(f"  {coq_expression(formulas[0])}", 4)
     texts = [_within(formula, _ATOM) for formula in formulas]
@@ -122,8 +128,10 @@ def _defined(name: str, variable_names: Iterable[str], size: int, body: str) -> 
 
 
 def matrix_text(name: str, variable_names: Iterable[str], formulas: Sequence[Expr]) -> str:
-    """Return the Coq definition of a function ``name`` of real variables, whose value has one component per formula."""
-    # a vector, quaternion or matrix (row by row), according to the number of formulas
+    """Return the Coq definition of a function ``name`` of real variables, whose value has the components ``formulas``.
+
+    The value is a number for 1 formula, a vector for 3, a quaternion for 4, a symmetric matrix for 6, a matrix for 9.
+    """
     return _defined(name, variable_names, len(formulas), _record(formulas))
 
 

@@ -11,9 +11,9 @@ from typing import Any
 __all__ = ["DOUBLE", "PAIR", "Bounded", "UndecidedError", "point"]
 
 DOUBLE = 2.0**-53
-"""Relative error of one operation on doubles."""
+"""Bound of the relative error of one operation on doubles."""
 PAIR = 2.0**-102
-"""Relative error of one operation on sums of two doubles; the proven ones are below 13*2^-106 (double_double.h)."""
+"""Bound of the relative error of one operation on sums of two doubles; proven are 13*2^-106 (double_double.h)."""
 _UNDER = 2.0**-1060  # above the error of a result too small for all its digits
 _SMALL = 2.0**-900  # above numbers whose sums of two doubles lack digits
 _LEAST = ulp(0.0)  # the smallest positive double: a smaller product is computed as 0
@@ -49,8 +49,8 @@ def _known(x: float) -> float:
 class Bounded:
     """The result of one operation for all inputs of a set: an interval of exact values, and bounds of the errors.
 
-    For instance, the product of 3 and the doubles from 1 to 2 has the interval from 3 to 6, an error of at most 6*2^-53
-    and a relative error of at most 2^-53.
+    For instance, the product of 3 and the doubles from 1 to 2 has the interval from 3 to 6, the error 6*2^-53 and the
+    relative error 2^-53, all slightly widened.
     """
 
     __slots__ = ("error", "high", "low", "pair", "relative")
@@ -62,7 +62,7 @@ class Bounded:
         most, least = self.most, self.least
         self.error = min(error, _scaled_up(relative, most)) if relative < inf else error
         self.relative = min(relative, error / least * _GROW + _LEAST * (error > 0)) if least > 0 else relative
-        # of the high part of a sum of two doubles: that sum
+        # for the high part of a sum of two doubles: the whole sum
         self.pair = pair
 
     @property
@@ -82,7 +82,7 @@ class Bounded:
         return Bounded(min(max(self.low, low), high), max(min(self.high, high), low), self.error, self.relative)
 
     def rounded(self, unit: float) -> "Bounded":
-        """Return the number after one more rounding of relative size ``unit``."""
+        """Return the number after one more rounding, of relative size ``unit``; an exact number is unchanged."""
         if self.is_exact:
             return self
         error = (self.error + unit * (self.most + self.error)) * _GROW + _UNDER
@@ -175,7 +175,7 @@ class Bounded:
 
     @property
     def computed(self) -> tuple[float, float]:
-        """The least and the largest double that the C program may have computed for this number, over all inputs."""
+        """A lower and an upper bound of the doubles that the C program computes for this number, over all inputs."""
         below, above = (min(self.error, self.relative * abs(end) if end else 0.0) for end in (self.low, self.high))
         if self.relative >= 1:
             below = above = self.error

@@ -1,7 +1,7 @@
 """Bounds of the errors of an exact step of a free body on a box of states, from its C text.
 
-The C text runs on numbers with bounds of their errors (bounded_number.py), once for each part of the box. In a part
-no component of omega changes its sign, and the phase of the elliptic functions is in one of 64 equal ranges.
+The C text runs on numbers with bounds of their errors (bounded_number.py), for one part of the box after another. In a
+part no component of omega changes its sign; the phase of the elliptic functions takes 64 equal ranges in turn.
 Nearly all of the error comes from single operations on doubles, and each of them adds its rounding error. Operations on
 sums of two doubles add the relative errors that functions.py states. Some intervals are cut to the known range of the
 exact value, such as 0 <= m <= 1 for the modulus m.
@@ -40,9 +40,9 @@ from symrot.errors import CertificateError, InputError
 __all__ = ["free_body_bounds"]
 
 CELLS = 64  # parts of the phase of a period
-MOST_PARTS = 600  # of the box of omega
-LONGEST = 2.0**20  # revolutions of a phase
-SIZES = 1e298  # products of dt and the scale of omega, of which the C text computes rounding errors without overflow
+MOST_PARTS = 600  # of the box of omega, with the parts that were divided
+LONGEST = 2.0**20  # revolutions of a phase in one step
+SIZES = 1e298  # largest dt*(scale of omega) whose rounding error the C text computes without overflow
 SMALL_MODULUS = 0.7
 
 
@@ -54,7 +54,7 @@ class _Context:
 
     def __init__(self, source: str, prefix: str) -> None:
         self.scale = 1.0  # the power of two by which omega is divided
-        self.phase = (0.0, 1.0)  # of the elliptic functions, in revolutions
+        self.phase = (0.0, 1.0)  # range of the phase of the elliptic functions, in revolutions
         self.nome = 1.0
         self.series_error = 0.0
         self.motion: list[Any] = []
@@ -154,7 +154,8 @@ class _Context:
 
         ``phase`` points to rate and start, each a sum of two doubles, in revolutions. ``count`` pairs are stored, all
         equal, for the interval of times at ``t``. The C function adds ``slope*whole`` to the phase; here ``slope`` must
-        be 0 and ``whole`` is ignored. InputError is raised for another slope, and for steps of too many revolutions.
+        be 0 and ``whole`` is ignored. InputError is raised for another slope, for steps of too many revolutions, and
+        for dt times the scale of omega above ``SIZES``.
         """
         values, first = phase
         rate, start = pair_total([values[first], values[first + 1]]), pair_total([values[first + 2], values[first + 3]])
@@ -185,7 +186,7 @@ class _Context:
         """Compute the constants of the motions that start in a part of the box, and store them in ``self.motion``.
 
         ``omega`` has the ranges of the three initial rates in this part; the initial quaternion is any unit quaternion.
-        InputError is raised if the C text rejects the states.
+        InputError is raised if the C text rejects the states, UndecidedError if the part must be divided.
         """
         motion = [self.machine.blank("free_body")]
         zero = point(0.0)
@@ -301,24 +302,24 @@ def _series_error(machine: Machine) -> float:
 def free_body_bounds(source: str, name: str, moments: list[float], box: Box) -> tuple[list[float], list[float]]:
     """Return (rounding, truncation): bounds of the errors of an exact step of a free body.
 
-    Each is a list of seven bounds: of omega_1 to omega_3, then of q0 to q3. Equal calls are computed once per process.
+    Each is a list of seven bounds: of omega_1 to omega_3, then of q0 to q3. The results of 16 calls are kept.
 
     Parameters
     ----------
     source : str
         The C text of the step.
     name : str
-        The name of its function for doubles.
+        The start of the names of its C functions, ``NAME_prepare`` and ``NAME_at``.
     moments : list of float
-        The principal moments.
+        The principal moments, in kg m^2.
     box : mapping
         Ranges of omega_1, omega_2, omega_3 and dt.
 
     Raises
     ------
     InputError
-        If the box contains states near a rotation about the middle axis, where no bounds are known, or if an error
-        has no bound for another reason, such as steps of too many revolutions.
+        If the box contains states near a rotation about the middle axis or near rest, where no bounds are known, or
+        if an error has no bound for another reason, such as steps of too many revolutions.
     CertificateError
         If the C text is no exact step of a free body.
     """

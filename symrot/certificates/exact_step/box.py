@@ -13,7 +13,7 @@ from symrot.errors import InputError
 __all__ = ["MIDDLE", "TINY", "Box", "Part", "halves", "power_near", "shells", "signed_parts"]
 
 TINY = 1e-100  # smaller components of omega, relative to the largest, are not covered; the C text takes some as zero
-LEAST_POWER, LARGEST_POWER = -1000, 1000  # of the scale of omega in the C text
+LEAST_POWER, LARGEST_POWER = -1000, 1000  # exponents of two of the scale of omega in the C text
 MIDDLE = (
     "expected ranges of omega without rotations near the middle axis, so that the modulus of the elliptic functions is "
     "below 0.7"
@@ -26,7 +26,7 @@ Part = tuple[tuple[float, float], ...]  # the range of each component of omega
 def signed_parts(box: Box) -> Iterator[Part]:
     """Split a box of omega by the signs of its components: in a part, each is negative, zero or positive throughout.
 
-    The parts leave out values of a component that are not zero but below TINY times the largest component in the box.
+    The parts leave out values of a component that are not zero but have a size below TINY times the largest in the box.
     InputError is raised if all values of a component are left out.
     """
     ends = [(float(low), float(high)) for low, high in (box[f"omega_{i}"] for i in (1, 2, 3))]
@@ -48,8 +48,8 @@ def signed_parts(box: Box) -> Iterator[Part]:
 def shells(part: Part) -> Iterator[tuple[float, Part]]:
     """Split a part of the box of omega by the power of two that scales omega there: yield pairs (power, sub-part).
 
-    The C text divides omega by a power of two near its largest component, so the power changes within a part.
-    InputError is raised for a part that reaches nearly to omega = 0.
+    The C text divides omega by a power of two near its largest component, so the power may change within a part.
+    InputError is raised for a part in which the largest component reaches 0, or varies by a factor above about 2^8.
     """
     smallest = max(min(abs(low), abs(high)) for low, high in part)
     largest = max(max(abs(low), abs(high)) for low, high in part)

@@ -17,8 +17,8 @@ __all__ = ["ELLIPTIC", "SLACK", "SMALL", "agm", "carlson_rf", "exponential", "me
 ELLIPTIC = 2.0**-90
 """Bound of the relative error of R_F, the arithmetic-geometric mean and exp on sums of two doubles.
 
-Errors of the arguments are not included. The C functions sum series to 1e-31, with at most 800 roundings of 2^-104;
-their measured relative errors are below 1e-30.
+It also bounds the absolute error of sine and cosine. Errors of the arguments are not included. The C functions sum
+series to 1e-31, with at most 800 roundings of 2^-104; their measured relative errors are below 1e-30.
 """
 SMALL = 1e-250  # smaller numbers lose digits in sums of two doubles
 MOST_FALL, MOST_RISE = -700.0, 700.0  # between these arguments, exp neither underflows nor overflows
@@ -29,7 +29,7 @@ def pair(value: Bounded) -> list[Any]:
     """Return a number as a sum of two doubles: [high part, low part].
 
     The high part is ``value`` rounded to a double, with ``value`` itself in its attribute ``pair``, from which
-    :func:`pair_total` recovers it. The low part, which no operation reads, is 0 if the number is exact, else None.
+    :func:`pair_total` recovers it. The low part is 0 if the number is exact, else None.
     """
     high = value.rounded(DOUBLE)
     return [Bounded(high.low, high.high, high.error, high.relative, value), point(0.0) if value.is_exact else None]
@@ -46,7 +46,6 @@ def pair_total(doubles: list[Any]) -> Bounded:
         return high.pair
     if low.is_exact and low.low == 0:
         return high
-    # a constant such as pi, to 31 digits
     total = high.low + low.low
     return Bounded(total * (1 - 2.0**-52), total * (1 + 2.0**-52), abs(total) * 2.0**-104, 2.0**-104)
 
@@ -92,7 +91,7 @@ def _carlson(x: float, y: float, z: float) -> float:
 
 
 def carlson_rf(x: Bounded, y: Bounded, z: Bounded) -> Bounded:
-    """Return Carlson's elliptic integral R_F; UndecidedError is raised if an argument may be tiny but not zero."""
+    """Return Carlson's elliptic integral R_F; raise UndecidedError if an inexact argument may be below ``SMALL``."""
     if any(each.high > 0 and each.low < SMALL and not each.is_exact for each in (x, y, z)):
         raise UndecidedError
     if z.is_exact and z.low == 1:  # of squares of cn and dn
@@ -105,7 +104,7 @@ def carlson_rf(x: Bounded, y: Bounded, z: Bounded) -> Bounded:
 
 
 def exponential(x: Bounded) -> Bounded:
-    """Return the exponential of a number; it is positive also where a double underflows to zero."""
+    """Return the exponential of a number; its interval holds also where a double would underflow or overflow."""
     # exp(-746) is 0 as a double; below MOST_FALL the result is between 0 and exp(MOST_FALL)
     low = exp(min(x.low, MOST_RISE)) if x.low > MOST_FALL else 0.0
     high = exp(max(x.high, MOST_FALL)) if x.high < MOST_RISE else inf

@@ -22,9 +22,9 @@ from symrot.formula.program import Program
 __all__ = ["DIGITS", "STATES", "law_section"]
 
 DIGITS = 15
-"""Decimal digits to which the step F(x, dt), computed by the C text from a tested state x, must be the motion.
+"""Decimal digits to which the C text of a step must obey the two checked equations at each tested state x.
 
-The two checked equations are F(x, 0) = x, and: the derivative of F by the step size dt is the rates at F."""
+With F(x, dt) for the state after a step of size dt, they are F(x, 0) = x and dF/d(dt) = (the rates at F)."""
 LIMIT = Decimal(10) ** -DIGITS
 PRECISION = 60  # digits of the numbers
 STATES = 12
@@ -33,7 +33,7 @@ LAW = (
     "for dt = 0 the state is unchanged, and the derivative of the new state with respect to dt is the rates at the "
     "new state"
 )
-_TERMS = 60  # of the series of a sine or cosine of at most pi/4
+_TERMS = 60  # of the series of sine and cosine, together, for angles of at most pi/4
 
 _State = tuple[list[Decimal], Decimal]
 
@@ -162,7 +162,7 @@ _OWN: Mapping[str, tuple[str, Callable[..., Any]]] = {
     "cbrt": ("rr", lambda x: Decimal(copysign(abs(float(x)) ** (1 / 3), float(x)))),
     "frexp": ("rrp", _frexp), "ldexp": ("rri", lambda x, power: x * Decimal(2) ** power),
     "memcpy": ("vppi", _memcpy),
-    # it tests that the processor rounds every operation
+    # the C function tests that the processor rounds every operation
     "dd_sound": ("i", lambda: 1),
     # polynomials in double precision, accurate to 1e-17
     "sincos_quarters": ("vrrpp", _sincos_quarters), "exp_moderate": ("rr", _exp),
@@ -198,8 +198,8 @@ def law_section(
 
     The motion is the solution of the rates' differential equations: a step of size 0 must change nothing, and the
     derivative by dt of the state after a step must be the rates there. The section is a dict: ``law`` (these two
-    equations in words), ``states`` (their number), ``digits``, ``largest_violation`` (relative, as text). Equal calls
-    are computed once per process.
+    equations in words), ``states`` (their number), ``digits``, ``largest_violation`` (relative, as text). The
+    results of 16 calls are kept.
 
     Parameters
     ----------
@@ -247,7 +247,8 @@ def _violation(
 ) -> Decimal:  # fmt: skip
     """Return the largest relative error, for one state and ``dt``, of F(x, 0) = x and dF/d(dt) = rates at F.
 
-    F is the step that the C function ``name`` computes. CertificateError is raised if the error is 10^-DIGITS or more.
+    F is the step that the C function ``name`` computes. CertificateError is raised if the error
+    is 10^-DIGITS or more, or if the C function rejects the state.
     """
     states = [component[0] for component in rates.signature.argument("y").components]
     scale = max(omega_scale, *map(abs, state[:3]))

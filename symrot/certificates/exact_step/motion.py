@@ -23,7 +23,8 @@ LAW = (
     "for dt = 0 the state is unchanged, and the derivative of the new state with respect to dt is the rates at the "
     "new state"
 )
-# a point with the roots that it needs, of a formula with one root: at most 8 degree/PRIME
+# a wrong formula with one square root holds at a random point where the root exists with a probability of at most
+# 8 degree/PRIME
 FACTOR = 8
 
 
@@ -146,7 +147,10 @@ def _root(x: Any) -> Residue:
 
 
 def _circle(x: Any) -> tuple[Residue, Residue]:
-    """Return cosine and sine of an angle: 1 and 0 for the angle 0, otherwise a random point of the unit circle."""
+    """Return cosine and sine of an angle: 1 and 0 for the angle 0, else a random point of the circle.
+
+    Equal angles have equal points.
+    """
     angle = Residue.of(x)
     if not angle.value:
         return Residue(1), Residue(0)

@@ -16,7 +16,7 @@ from sympy.polys.rings import PolyRing
 
 from symrot.certificates.laws.fractions import FormulaReader, FractionField, Quotient
 from symrot.certificates.readback.intended_constants import IntendedConstant, intended_value
-from symrot.certificates.readback.operations import Operations
+from symrot.certificates.readback.operations import Operations, operands
 from symrot.errors import CertificateError
 from symrot.kernels.removable import REMOVABLE, arc_ratio, explicit, sinc
 
@@ -132,14 +132,28 @@ class _EqualityProver:
         for node in nodes:
             if node[0] == "select" and node[1] == "<":
                 self.in_series |= self._below(node[4], node[2])
+        self.in_series -= self._outside_series()
         for index, node in enumerate(nodes):
             self.values.append(self.fractions.number(Fraction(0)) if index in self.in_series else self._value(node))
         return {place: self.values[index] for place, index in self.operations.outputs}
 
-    def _below(self, index: int, leaf: int) -> set[int]:
-        """Return the operations that compute node ``index`` from node ``leaf``.
+    def _outside_series(self) -> set[int]:
+        """Return the indices of the nodes that outputs need otherwise than in the series of a conditional."""
+        outside: set[int] = set()
+        waiting = [index for _, index in self.operations.outputs]
+        while waiting:
+            index = waiting.pop()
+            if index not in outside:
+                outside.add(index)
+                node = self.operations.nodes[index]
+                near = 2 if node[0] == "select" and node[1] == "<" else None
+                waiting += [each for place, each in enumerate(operands(node)) if place != near]
+        return outside
 
-        CertificateError is raised if they do not compute a polynomial in node ``leaf``.
+    def _below(self, index: int, leaf: int) -> set[int]:
+        """Return the indices of the nodes that compute node ``index`` from node ``leaf``.
+
+        CertificateError is raised unless they are constants, sums and products: a polynomial in node ``leaf``.
         """
         if index == leaf:
             return set()
@@ -256,8 +270,8 @@ class _EqualityProver:
         """Return a record, with an error bound, of the Taylor polynomial by which the C text computes a function.
 
         The C text uses the polynomial for x^2 < ``split``; ``written`` are its coefficients there. CertificateError is
-        raised if they are not those of the series of the function ``name``, or if the terms of the series do not
-        alternate in sign and decrease.
+        raised if they are not those of the series of the function ``name``, or if the terms up to the first
+        omitted one do not alternate in sign and decrease.
         """
         exact = REMOVABLE[name].taylor(len(written) + 1)
         for value, true in zip(written, exact, strict=False):

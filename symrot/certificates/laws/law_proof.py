@@ -1,4 +1,4 @@
-"""One attempt to prove a law: each expression that the law states to be zero is a sum of cofactors times relations.
+"""One attempt to prove a law: the numerator of each expression stated to be zero is a sum of cofactors times relations.
 
 A relation is a polynomial known to be zero. A generator is a variable for a function value such as ``cos(x)``. A base
 angle is an angle, such as x/2, whose sine and cosine are generators.
@@ -55,6 +55,7 @@ class CaseProof:
     #     ("name", symbol, x)                       the generator ``symbol`` stands for the function value x
     #     ("circle", x) ("root", x) ("sign", x)     sin(x)^2 + cos(x)^2 = 1; sqrt(x)^2 = x; copysign(1, x)^2 = 1
     #     ("sum", x, y) ("odd", x) ("quarter", x)   sine and cosine of x + y; of -x; of x + pi/2
+    #     ("quarter back", x)                       sine and cosine of x - pi/2
     #     ("arc", y, x) ("wrap", x)                 sine and cosine of atan2(y, x); of x wrapped to [-pi, pi]
     #     ("square", x, y, factor, cofactors)       sqrt(x) is y: (x - y^2)*factor = sum of cofactors times relations;
     #                                               y is never negative
@@ -110,8 +111,10 @@ class LawProver(FormulaReader):
         self.pool = sum(name.endswith("_") and name[0] == "g" and name[1:-1].isdigit() for name in generators)
 
     def run(self, decided: Sequence[Choice]) -> CaseProof:
-        """Return the proof of one case; ``decided`` lists its conditions as (left, relation, right) in text form."""
-        # UndecidedChoice is raised for a conditional that is not in the list
+        """Return the proof of one case; ``decided`` lists its conditions as (left, relation, right) in text form.
+
+        UndecidedChoice is raised for a conditional that is not in the list, CertificateError if the proof fails.
+        """
         self.decided = {(left, right): relation for left, relation, right in decided}
         hypotheses = [self.read(relation) for relation in self.law.relations]
         if any(below != 1 for _, below in hypotheses):
@@ -218,7 +221,7 @@ class LawProver(FormulaReader):
         return self.radicals[inside]
 
     def perfect(self, inside: PolyElement) -> PolyElement | None:
-        """Return the root of the polynomial ``inside`` if it is a square and the root is never negative; else None."""
+        """Return the square root of the polynomial ``inside`` if it is a polynomial and never negative, else None."""
         content, factors = inside.factor_list()
         roots = [isqrt(abs(int(number))) for number in (content.numerator, content.denominator)]
         if content < 0 or roots[0] ** 2 != content.numerator or roots[1] ** 2 != content.denominator:

@@ -127,7 +127,7 @@ UNIT: dict[int, tuple[int, ...]] = {
     2: (4, 3),
     3: (6, 3, 2),
     4: (10, 4, 2, 1),
-}  # integers whose squares sum to a square
+}  # number of components -> integers whose squares sum to a square
 
 
 def _witness(name: str, law: Law, hypothesis_names: Sequence[str], names: Sequence[str]) -> tuple[tuple[str, str], ...]:

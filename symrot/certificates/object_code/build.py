@@ -93,9 +93,11 @@ def objects_section(
     Raises
     ------
     CertificateError
-        If the C text is not of the subset that symrot emits.
+        If the C text cannot be read or is not of the subset that symrot emits, or if the object file is not for x86-64.
     CompilerError
-        If there is no ``objdump``, or a compiler rejects the text.
+        If there is no ``objdump``, or a compiler cannot be run or rejects the text.
+    InputError
+        If the effect of a flag is unknown, or a compiler is neither gcc nor clang.
     """
     try:
         text = source.read_text(encoding="utf-8")

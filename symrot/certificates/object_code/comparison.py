@@ -269,7 +269,7 @@ def _is_exact(terms: Terms, product: int) -> bool:
 
 
 def _difference(terms: Terms, expected: int, got: int) -> str:
-    """Return a sentence with the first difference of the terms ``expected`` (C text) and ``got`` (object code)."""
+    """Return a sentence with the innermost difference of the terms ``expected`` (C text) and ``got`` (object code)."""
     while True:
         first, second = terms.operands(expected), terms.operands(got)
         left, right = terms.nodes[expected], terms.nodes[got]

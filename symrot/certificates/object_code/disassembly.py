@@ -305,7 +305,7 @@ def _operand(text: str) -> Operand | None:
 
     The result is None if the text cannot be parsed.
     """
-    if re.fullmatch(r"-?0x[0-9a-f]+|[0-9a-f]+|\d+", text) and not re.fullmatch(r"[a-d][hl]", text):
+    if re.fullmatch(r"-?0x[0-9a-f]+|[0-9a-f]+", text):
         return Constant(int(text, 16))
     if re.fullmatch(r"[a-z]\w*", text):
         return Register(text)

@@ -316,10 +316,9 @@ def _leave(state: MachineState, instruction: Instruction) -> None:
 def condition_holds(state: MachineState, condition: str) -> bool:
     """Return whether a conditional jump such as ``jne``, whose ``condition`` is ``"ne"``, is taken.
 
-    UndecidedBranch is raised if that depends on the inputs.
+    UndecidedBranch is raised if that depends on the inputs, NotUnderstood if the flags are unknown.
     """
     kind, values = state.flags
-    # raises UndecidedBranch if the compared numbers depend on the inputs
     if kind == "numbers" and condition in OF_NUMBERS:
         return state.decide(OF_NUMBERS[condition], values[0], values[1])
     if kind == "integers" and condition in OF_INTEGERS:

@@ -91,7 +91,7 @@ def execution_paths(state: MachineState) -> Iterator[ExecutionPath]:
     Raises
     ------
     NotUnderstood
-        If an instruction cannot be followed; the message names it and its address.
+        If an instruction cannot be followed (the message names it and its address), or there are too many paths.
     """
     waiting, count = [(state, 0, frozenset[tuple[str, int]]())], 0
     while waiting:

@@ -45,6 +45,8 @@ def run_vector_instruction(state: MachineState, instruction: Instruction) -> Non
     constant = operands[-1].value if operands and isinstance(operands[-1], Constant) else None
     if constant is not None:
         operands = operands[:-1]
+    elif bare.startswith(("psll", "psrl", "psra")):
+        raise NotUnderstood("expected a shift by a constant, got a variable shift")
     if constant is None and is_vex and bare in ("permilps", "permilpd"):
         bare = f"{bare} by words"
     operation = SHUFFLES.get(bare) or NUMERIC.get(bare)

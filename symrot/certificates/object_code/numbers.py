@@ -39,7 +39,7 @@ def _lanes(state: MachineState, words: Words, width: int) -> list[int]:
 def _each(suffix: str, operation: Callable[..., int], arguments: int = 2) -> Numeric:
     """Return the function for an instruction that applies ``operation`` to numbers, element by element.
 
-    The operands are the last ``arguments`` registers of the instruction's sources.
+    The operands are the last ``arguments`` of the instruction's sources.
     """
     width, is_packed = WIDTHS[suffix[1]], suffix[0] == "p"
 
@@ -143,7 +143,7 @@ def _greater(terms: Terms, a: int, b: int) -> int:
 
 
 def _blended(suffix: str) -> Numeric:
-    """Return the function that executes a blend: take the second source where the third is negative, else the first."""
+    """Return the function that executes a blend: take the second source where the third has its sign bit set."""
 
     def one(terms: Terms, a: int, b: int, mask: int) -> int:
         # the sign bit of the mask decides

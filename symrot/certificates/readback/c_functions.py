@@ -127,7 +127,7 @@ class Cursor:
 
     def integer(self) -> int:
         """Return the value of the next token, which must be an integer, and move past the token."""
-        if not self.peek().isdigit():
+        if not re.fullmatch(r"0|[1-9]\d*", self.peek(), re.ASCII):  # 010 would be 8 in C
             raise self.fail("an index")
         return int(self.next().text)
 

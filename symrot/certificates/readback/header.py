@@ -67,7 +67,7 @@ def check_header(header: str, source: str, name: str) -> None:
     Raises
     ------
     CertificateError
-        If a line is unexpected or a prototype has no function; the message names the first such line or prototype.
+        If a line is unexpected, or a function has no prototype, or a prototype no function; the message names one.
     """
     if re.search(r"\\|\?\?|[\0-\x09\x0b-\x1f]", header):
         raise CertificateError(
@@ -97,7 +97,9 @@ def check_header(header: str, source: str, name: str) -> None:
 
 
 def check_source(source: str, name: str) -> None:
-    """Raise CertificateError if a C file includes other files, or contains anything but the functions of a step.
+    """Raise CertificateError if a C file contains anything but the functions of a step and the includes they need.
+
+    These are <math.h> and the step's header, which must be included.
 
     Parameters
     ----------

@@ -31,13 +31,11 @@ _ONLY_IN_C = ("double", "float", "fabs", "symrot_", "void", "static", "inline", 
 
 def compare_javascript(text: str, name: str, c_text: str, where: str = "kernel") -> None:
     """Raise CertificateError unless a JavaScript kernel performs the same operations as the C function for doubles."""
-    # same constants, same functions, same order of rounding
     compare_operations(_as_c, text, name, c_text, where)
 
 
 def _as_c(text: str, name: str, model: CFunction, where: str) -> str:
     """Return a JavaScript module as C text with the same meaning; ``model`` is the kernel's C function."""
-    # ``model`` gives the sizes of arrays
     body = _COMMENT.sub(" ", text).replace(_COPYSIGN, "")
     parts = _HEAD.split(body)
     if parts[0].strip() or len(parts) < 4:

@@ -41,13 +41,11 @@ For example, the derivative of sinc(x) = sin(x)/x is -x*tangent_gap(x), where ta
 
 def compare_jax(text: str, name: str, c_text: str, where: str = "kernel") -> None:
     """Raise CertificateError unless a JAX kernel performs the same operations as the C function for doubles."""
-    # same constants, same functions, same order of rounding
     compare_operations(_as_c, text, name, c_text, where)
 
 
 def _as_c(text: str, name: str, model: CFunction, where: str) -> str:
     """Return a JAX module as C text with the same meaning; ``model`` is the kernel's C function."""
-    # ``model`` gives the sizes of arrays
     head = _HEAD.match(text)
     if head is None:
         raise CertificateError(f"{where}: expected a docstring and the import of jax.numpy, as symrot emits them")

@@ -280,7 +280,7 @@ def _defined(functions: Mapping[str, CFunction], name: str, where: str) -> CFunc
 
 
 def _real_of(function: CFunction, where: str) -> str:
-    """Return the type of all numbers of a kernel, ``"double"`` or ``"float"``; CertificateError if it has both."""
+    """Return the type of a kernel's numbers, ``"double"`` or ``"float"``; CertificateError unless there is one type."""
     types = {p.type for p in function.parameters} - {"size_t"}
     if function.returns != "void" or len(types) != 1:
         raise CertificateError(
@@ -294,7 +294,7 @@ PRECISION = {"double": "binary64", "float": "binary32"}
 
 @lru_cache(maxsize=32)
 def read_kernel(text: str, name: str, where: str = "kernel") -> Operations:
-    """Read a one-sample function of a C file and return its operations; equal texts are read once.
+    """Read a one-sample function of a C file and return its operations; the results of 32 calls are kept.
 
     Parameters
     ----------
@@ -375,7 +375,10 @@ def read_batch(text: str, name: str, where: str = "kernel") -> Operations:
 
 
 def _samples(cursor: Cursor, scope: _Scope, start: str, end: str) -> tuple[Token, ...]:
-    """Move past a loop over samples, from the C variable ``start`` to ``end``; return the tokens of its body."""
+    """Move past a loop over samples, from the C variable ``start`` to ``end``; return the tokens of its body.
+
+    The name of the sample's index is stored in ``scope.loop``.
+    """
     if cursor.peek() == "SYMROT_INDEPENDENT":
         cursor.next()
     cursor.expect("for", "(", "size_t")

@@ -141,7 +141,7 @@ def outward(value: Fraction, direction: float) -> float:
 
 
 def _check_box(operations: Operations, box: Box) -> None:
-    """Raise InputError if a box lacks a finite range for an input, or has a range for an unknown input."""
+    """Raise InputError if a box lacks an input, or has an unknown input or a range that is reversed or not finite."""
     unknown = sorted(set(box) - set(operations.inputs))
     if unknown:
         raise InputError(
@@ -161,7 +161,10 @@ def _check_box(operations: Operations, box: Box) -> None:
 
 
 def bound_task(task: BoundTask, fresh: bool = False) -> SearchResult:
-    """Return the stored error bound for a task, or the result of a search if none is stored or ``fresh`` is true."""
+    """Return the stored error bound for a task, or the result of a search if none is stored or ``fresh`` is true.
+
+    The result of a search is stored.
+    """
     result = None if fresh else STORE.get(task.key)
     if result is None:
         with np.errstate(all="ignore"):  # a range may be a single point

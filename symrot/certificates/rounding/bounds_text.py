@@ -114,7 +114,7 @@ def rounded_up(value: Fraction, count: int = DIGITS) -> str:
 
 
 def region_phrases(region: Region) -> list[str]:
-    """Return a phrase for each restriction of the inputs, such as ``q0, q1: squares add up to 1, but for 2^-20``.
+    """Return a phrase for each restriction of the inputs, such as ``q[0], q[1]: squares add up to 1, but for 2^-20``.
 
     The number 2^-20 is the tolerance of the sum.
     """

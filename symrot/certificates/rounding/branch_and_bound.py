@@ -22,7 +22,7 @@ GAP = 1.02  # a bound has converged if it is at most 2 % above the error at a po
 BATCH = 256  # parts that are split at once
 CHUNK = 2048  # boxes that are evaluated at once
 MOST_CENTRED = 8  # largest number of inputs of a polynomial that is searched again with mean value forms
-SECOND = 0.25  # a second input is halved too if its gain (reduction of the bound) is this part of the first gain
+SECOND = 0.25  # a second input is halved too if its gain (reduction of the bound) exceeds this part of the first gain
 SHRUNK = 8.0  # a range is shrunk to an eighth of its width to estimate the effect of halving it repeatedly
 NARROWEST = 2.0**-24  # relative to the box: a part this narrow without a bound is at a singular point
 
@@ -179,8 +179,7 @@ class _BoundSearch:
         for number, (relation, i, j) in enumerate(self.graph.conditions):
             left, right = self.graph.nodes[i], self.graph.nodes[j]
             here = parts.undecided == number
-            # a box becomes smaller only if its condition compares an input with a constant: x < 2 ends the range of x
-            # at 2
+            # x < 2 ends the range of x at 2
             if left[0] == "in" and right[0] == "const" and relation in _LEFT_IS_LESSER:
                 side = 1 if _LEFT_IS_LESSER[relation] == (branch == 1) else 0
                 clip = np.minimum if side else np.maximum

@@ -30,8 +30,6 @@ _NOT_LESS = {  # relation -> the branch in which left >= right, the branch in wh
 }  # fmt: skip
 
 
-# If b is computed as the larger of RN(p + q) and RN(p - q), where RN rounds to nearest, then b is at least p, because q
-# or -q is not negative and rounding keeps order.
 def decide_branches(
     relation: str, a: Array, b: Array, decision: NDArray[np.int8]
 ) -> tuple[NDArray[np.bool_], NDArray[np.bool_]]:
@@ -69,7 +67,10 @@ def _narrow_ordered(nodes: Sequence[Node], i: int, j: int, here: NDArray[np.bool
 
 
 def _narrow_end(nodes: Sequence[Node], k: int, row: int, end: Array, computed: list[Array]) -> None:
-    """Raise the lower end (``row`` 0) or reduce the upper end (``row`` 1) of the range of node ``k`` to ``end``."""
+    """Raise the lower end (``row`` 0) or reduce the upper end (``row`` 1) of the range of node ``k`` to ``end``.
+
+    A range that would become empty, or the range of a product, is not changed.
+    """
     kind = nodes[k][0]
     if kind in ("mul", "square"):  # a fused sum uses the unrounded product, for which the comparison says nothing
         return
@@ -82,6 +83,8 @@ def _narrow_end(nodes: Sequence[Node], k: int, row: int, end: Array, computed: l
     computed[k] = np.where(ends[0] <= ends[1], ends, computed[k])
 
 
+# The larger of RN(p + q) and RN(p - q), where RN rounds to nearest, is at least p, and the smaller at most p, because q
+# or -q is not negative and rounding keeps order.
 def _middle(one: Node, other: Node) -> int | None:
     """Return the index of the node p if one node is p + q and the other p - q; otherwise None."""
     if (one[0], other[0]) == ("sub", "add"):

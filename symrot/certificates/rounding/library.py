@@ -39,7 +39,10 @@ class RoundingProblem:
     symbols: Mapping[str, str]  # C name of an input component -> symbol, such as "angles[1]" -> "theta"
 
     def place(self, name: str) -> str:
-        """Return the C name of an input component: ``"q[1]"`` for the ``name`` ``"q[1]"`` or the symbol ``"q1"``."""
+        """Return the C name of an input component: ``"q[1]"`` for the ``name`` ``"q[1]"`` or the symbol ``"q1"``.
+
+        InputError is raised for another name.
+        """
         for place, symbol in self.symbols.items():
             if name in (place, symbol):
                 return place
@@ -139,7 +142,7 @@ def largest_box(
     """Return (size, box): the largest size found at which no rounding error on the box exceeds ``target``.
 
     The ranges of the inputs ``places`` (default: all) are ``size`` times as wide, with the same middles: for size 2,
-    1 to 3 becomes 0 to 4. The size is found by bisection and is at most 1024.
+    1 to 3 becomes 0 to 4. The size is found by doubling and bisection and is at most 1024.
 
     Raises
     ------

@@ -312,11 +312,15 @@ def _at_origin(reader: _GraphReader, index: int, square: int) -> Fraction | None
 
 
 def _gap(reader: _GraphReader, node: Node) -> int | None:
-    """Return a new node for (x - sin x)/x^3 or (sin x - x cos x)/x^3 if ``node`` computes it, else None."""
+    """Return a new node for (x - sin x)/x^3 or (sin x - x cos x)/x^3 if ``node`` has its form, else None.
+
+    The form is ``x*x < c ? series : formula``, with 1/6 or 1/3 as the value of the series at 0. Nothing else is checked
+    here; that the C text computes the function is proven in laws/equality.py.
+    """
     if node[0] != "select" or node[1] != "<" or reader.source[node[2]][0] != "mul":
         return None
     leaf, other = reader.source[node[2]][1:]
-    # these formulas lose all digits near 0, so the C text has x*x < c ? series : formula; the series is 1/6 or 1/3 at 0
+    # these formulas lose all digits near 0
     origin = _at_origin(reader, node[4], node[2])
     names = [name for name, value in _GAPS.items() if origin is not None and abs(origin - value) < Fraction(1, 2**20)]
     if leaf != other or not names:

@@ -26,7 +26,7 @@ _NUMBERS = ("bound", "pointwise", "largest_value")
 @cache
 def method() -> str:
     """Return the SHA-256 of the source files that compute bounds (the "method"), without docstrings and comments."""
-    # part of the key of each stored bound, so that a bound by other code is not used
+    # part of the key of each bound in the user's cache, so that a bound by other code is not used
     return code_digest(Path(__file__).with_name(f"{name}.py").read_text(encoding="utf-8") for name in _METHOD)
 
 

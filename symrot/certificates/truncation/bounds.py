@@ -64,8 +64,8 @@ def truncation_bounds(rates: Program, method: Method, box: Box) -> dict[str, flo
     Raises
     ------
     InputError
-        If the steps are so large, or the box so wide, that no bound is found, or if the rates contain a function
-        whose intervals symrot cannot compute.
+        If the steps are so large, or the box so wide, that no bound is found, if the rates contain a function whose
+        intervals symrot cannot compute, or if they are no polynomials and the method has rounded coefficients.
     CertificateError
         If the method does not have its order.
     """
@@ -144,7 +144,10 @@ class _Problem:
     defects: tuple[Fraction, ...]
 
     def bounds(self, box: Box) -> list[float]:
-        """Return a bound of the truncation error for each state, valid for all motions that start in ``box``."""
+        """Return a bound of the truncation error for each state, valid for all motions that start in ``box``.
+
+        The bounds are infinite if none are found.
+        """
         values: dict[str, Any] = {name: interval(*ends) for name, ends in box.items()}
         low, high = box[SIZE]
         span = interval(min(low, Fraction(0)), max(high, Fraction(0)))  # all times from the start to the end

@@ -27,7 +27,7 @@ def precision() -> Iterator[None]:
 
 
 def number(value: Fraction) -> Any:
-    """Return an interval that contains a fraction, as narrow as the precision allows."""
+    """Return an interval that contains a fraction, about as narrow as the precision allows."""
     return _number(value, iv.prec)
 
 
@@ -95,7 +95,7 @@ FUNCTIONS: Mapping[str, Callable[[Any], Any]] = {
     "cosh": lambda x: (iv.exp(x) + iv.exp(-x)) / 2, "tanh": lambda x: 1 - 2 / (iv.exp(2 * x) + 1),
     "atan": lambda x: iv.atan2(x, iv.mpf(1)),
 }  # fmt: skip
-"""Functions of intervals by name; outside the domain of sqrt, log and tan they raise ZeroDivisionError."""
+"""Functions of intervals by name; where sqrt, log or tan may not be differentiable, they raise ZeroDivisionError."""
 
 
 class Functions(dict[str, Callable[..., Any]]):

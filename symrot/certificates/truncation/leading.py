@@ -41,8 +41,8 @@ def leading_terms(
     """Return the rates, and the coefficients of h^(n+1), h^(n+2), .. of motion minus step, where n is the order.
 
     Each coefficient is a list with a polynomial for each state. There are no coefficients if the rates are no
-    polynomials, or if the coefficients have too many terms. Rates that are polynomials are returned expanded, which
-    makes bounds from intervals tighter.
+    polynomials, if n is 9 or more, or if the coefficients have too many terms. Except in the first two cases the rates
+    are returned expanded, which makes bounds from intervals tighter.
 
     Parameters
     ----------

@@ -204,18 +204,16 @@ def is_complex(sides: Sequence[Node], letter: str) -> bool:
 def with_parts(relation: tuple[str, Node, Node], letter: str, source: str) -> tuple[str, Node, Node]:
     """Return a complex equation with each side as a column (real part, imaginary part).
 
-    A side that is a name alone stays a name; if the other side has no imaginary part, its real part replaces it.
-    ``letter`` is the imaginary unit, ``source`` the typed text, for messages.
+    A side that is a name alone, such as z in ``z = exp(i*x)``, stays a name; the other side is then its real part alone
+    if it has no imaginary part. ``letter`` is the imaginary unit, ``source`` the typed text, for messages.
 
     Raises
     ------
     InputError
-        For a function whose parts are not known.
+        For a function whose parts are not known, and for a power that is no whole number up to ``MOST_FACTORS``.
     """
     sign, *sides = relation
     split = _Splitter(letter, source)
-    # a name such as z in z = exp(i*x) only names the other side, which becomes a column, or its real part alone if it
-    # has no imaginary part
     if any(side.kind == "name" and side.value != letter for side in sides):
         left, right = (side if side.kind == "name" else _real_or_column(split.parts(side)) for side in sides)
         return sign, left, right

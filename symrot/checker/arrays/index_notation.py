@@ -175,7 +175,10 @@ def _once(counts: Counter[str]) -> Counter[str]:
 
 
 def _free(term: Node) -> tuple[str, ...]:
-    """Return the free indices of a term in alphabetical order: i and j for ``a_ik b_kj``."""
+    """Return the free indices of a term in alphabetical order: i and j for ``a_ik b_kj``.
+
+    InputError is raised for an index that occurs more than twice.
+    """
     counts = _counts(term)
     often = [index for index, count in counts.items() if count > 2]
     if often:

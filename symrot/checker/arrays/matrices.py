@@ -72,7 +72,7 @@ def _rotation(name: str, timed: bool) -> Node:
 
 
 def used_matrices(sides: Sequence[Node], known: Collection[str]) -> tuple[str, ...]:
-    """Return the capital letters that a claim uses as matrices, as A and B in ``det(A B)``, except ``known`` ones."""
+    """Return the capitals that a claim uses as names of matrices, as A and B in ``det(A B)``, except ``known`` ones."""
     names = dict.fromkeys(name for name in _inverted_in_order(sides) if name not in (*known, *UNIT_NAMES))
     for side in sides:
         for node in nodes_of(side):
@@ -181,7 +181,7 @@ def _bare(node: Node) -> Node:
 
 
 def _name_of_array(node: Node) -> str:
-    """Return the name A if a formula is A, A^T, A^-1 or the rate of A; an empty text for any other formula."""
+    """Return the name A if a formula is A, A^T, a power such as A^-1 or the rate of A; an empty text for others."""
     inner = node.args[0] if node.kind in ("transpose", "power") or node.value == "diff" else node
     return str(inner.value) if inner.kind == "name" else ""
 
@@ -191,7 +191,7 @@ def _is_array(node: Node, vectors: Collection[str]) -> bool:
 
 
 def used_columns(sides: Sequence[Node], known: Collection[str]) -> tuple[str, ...]:
-    """Return the small letters that a claim uses as columns, as r and v in ``r^T r`` and ``(R v)^T``."""
+    """Return the names with small letters that a claim uses as columns, as r and v in ``r^T r`` and ``(R v)^T``."""
     names: dict[str, None] = {}
     for side in sides:
         for node in nodes_of(side):

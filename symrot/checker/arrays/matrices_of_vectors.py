@@ -36,7 +36,7 @@ SKEW_LETTER = re.compile(r"[A-DF-HJ-Z]|Omega")
 """Pattern of the letters that may be skew matrices: Ω and all capitals but E and I, which are unit matrices."""
 
 UNITS = ("I", "E", "I_3", "E_3")
-ANGLES = re.compile(r"(var)?(theta|phi)|alpha|beta|gamma|psi|delta|vartheta")
+ANGLES = re.compile(r"(var)?(theta|phi)|alpha|beta|gamma|psi|delta")
 ROTATION = re.compile(r"[RCQA](_\w+)?")
 """Patterns of the names of angles in exponents, such as θ in ``R = e^(θ K)``, and of the names of rotation matrices,
 such as R."""

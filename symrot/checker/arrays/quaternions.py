@@ -380,7 +380,7 @@ def _of_one_shape(sides: Sequence[Node], shapes: Mapping[str, Shape]) -> tuple[N
 
 
 def _definitions(name: str, used: Collection[str], moving: bool) -> list[tuple[str, Node]]:
-    """Return the definition of the quaternion ``name`` by its components, as q = (q_0, q_1, q_2, q_3).
+    """Return the definitions of the quaternion ``name``, as q = (q_0, q_1, q_2, q_3), and of its vector part, if used.
 
     If ``moving``, the components are functions of time.
     """

@@ -48,7 +48,6 @@ def _is_image(image: Node, vector: Node) -> bool:
     True for the vector part of a formula that contains v once, such as ``q v q*``; also for a formula that is linear in
     v and has v in a cross or dot product, such as ``v cos θ + n × v sin θ``.
     """
-    # such a product or sum is a linear map of the vector
     nodes = nodes_of(image)
     if image.kind == "call" and image.value == "vector_part":
         return nodes.count(vector) == 1

@@ -101,9 +101,9 @@ class TypedNotation:
         return f"{self.formula(left)} {'=' if self.plain and sign == '==' else sign} {self.formula(right)}"
 
     def rewritten(self, source: str) -> str:
-        """Return an equation or inequality in SymPy syntax as text in this notation.
+        """Return an equation or inequality in SymPy syntax as text in this notation, or unchanged if it is unreadable.
 
-        Words after it (``with w == ..``) stay unchanged.
+        Words after the relation (``with w == ..``) stay unchanged.
         """
         if not self.plain:
             return source
@@ -119,22 +119,21 @@ class TypedNotation:
 
 
 def with_formulas(source: str, formula: Callable[[Node], str], signs: Mapping[str, str]) -> str:
-    """Return a condition such as ``0 <= x**2`` in another notation: formulas as ``formula`` writes them, signs by
-    ``signs``.
+    """Return a condition such as ``0 <= x**2`` in another notation, or unchanged if it is unreadable.
+
+    ``formula`` returns the text of a formula in that notation; ``signs`` maps signs such as ``==`` to its signs.
     """
     pieces = SIGN.split(source)
     try:
-        # ``formula`` returns the text of a formula in this notation
         formulas = [formula(read_expression(piece)) for piece in pieces[::2]]
     except InputError:
-        # an unreadable condition stays unchanged
         return source
     between = [signs.get(sign.strip(), sign.strip()) for sign in pieces[1::2]] + [""]
     return " ".join(f"{each} {sign}".strip() for each, sign in zip(formulas, between, strict=True))
 
 
 def decimal(value: Fraction) -> str:
-    """Return a number as text: an integer, a decimal number of at most 28 digits if it is exact, or else ``(1/3)``."""
+    """Return a number as text: an integer, an exact decimal of at most 28 significant digits, or else ``(1/3)``."""
     if value.denominator == 1:
         return str(value)
     written = format(Decimal(value.numerator) / Decimal(value.denominator), "f")

@@ -56,13 +56,12 @@ def letters_of_quantities(trees: Sequence[Node]) -> tuple[str, ...]:
 
 
 def _is_imaginary(product: Node, letter: str) -> bool:
-    """Return whether ``letter`` is the imaginary unit in a product, as I is in ``2*I*sin(x)``."""
+    """Return whether a product multiplies ``letter`` by sin, cos or sinh and by numbers only, as in ``2*I*sin(x)``."""
     others = [factor for factor in product.args if (factor.kind, factor.value) != ("name", letter)]
     pure = all(
         factor.kind == "number" or (factor.kind == "call" and factor.value in ("sin", "cos", "sinh"))
         for factor in others
     )
-    # all other factors are numbers, sines or cosines, at least one of them no number
     return len(others) < len(product.args) and pure and any(factor.kind == "call" for factor in others)
 
 

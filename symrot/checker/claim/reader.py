@@ -135,7 +135,7 @@ class _Text:
 
 
 def _without_lowering(tokens: list[Token]) -> list[Token]:
-    """Return tokens without the mark before a lowered cross (a subscript), as in ``[k]_×``."""
+    """Return tokens without the mark ``_`` between a bracket and a cross, as in ``[k]_×``."""
     padded = [*tokens, tokens[-1]]
     triples = zip([tokens[0], *tokens], tokens, padded[1:], strict=False)
     return [
@@ -202,12 +202,12 @@ def with_time(node: Node, names: Collection[str]) -> Node:
 
 
 def readings_of(source: str, where: str = "", declared: Declared | None = None) -> list[Reading]:
-    """Return the readings (interpretations) of a claim, the usual one first.
+    """Return up to 6 readings (interpretations) of a claim, the usual one first.
 
     Raises
     ------
     InputError
-        If the text cannot be read; the message gives the first such position.
+        If the text cannot be read.
 
     Examples
     --------
@@ -261,7 +261,6 @@ def _only(text: _Text, one_side: bool, rates: bool = False) -> Reading:
     if strict is not None:
         return strict
     usual, *others = _all_typed(text, one_side, refusal)
-    # with ``rates``, x' is always the rate of x, and no prime is ambiguous
     doubts = [doubt for doubt in usual.doubts if not (rates and doubt.key[0] == "prime")]
     if usual.plain and others and doubts:
         expected = f"brackets or product signs ({doubts[0].excerpt!r} has two readings)"
@@ -279,12 +278,12 @@ def read_expression(source: str, where: str = "", declared: Declared | None = No
     where : str
         The place of the text, which begins every error message.
     declared : Declared, optional
-        The names that have a meaning.
+        The names of symbols and functions of time.
 
     Raises
     ------
     InputError
-        If the text cannot be read or has two readings; the message gives the first such position.
+        If the text cannot be read or has two readings.
 
     Examples
     --------
@@ -303,7 +302,8 @@ def read_relation(source: str, where: str = "", declared: Declared | None = None
     Raises
     ------
     InputError
-        As :func:`read_expression`, and if there is no relation sign or more than one.
+        As :func:`read_expression`, and if there is no relation sign or more than one, a second line, or a hat on a
+        vector.
     """
     usual = _only(_Text(source, where, declared or Declared()), False, rates)
     if len(usual.lines) > 1 or len(usual.lines[0].signs) > 1:

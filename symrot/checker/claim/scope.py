@@ -70,10 +70,9 @@ class Scope(ABC):
 
     @property
     def assumed_bases(self) -> tuple[Expr, ...]:
-        """The bases of powers that must be assumed to be positive, as x in x^a."""
+        """Bases x of powers x^a that must be assumed to be positive, as no log or root of the claim implies it."""
         powers = Counter(self.bases)
         radicands = Counter(self.radicands)
-        # elsewhere in the claim, log(x) or sqrt(x) would already imply it
         return tuple(base for base, times in powers.items() if radicands[base] <= times)
 
     def fail(self, node: Node, expected: str) -> InputError:
@@ -142,7 +141,7 @@ class Scope(ABC):
         return value
 
     def divide_by(self, value: Expr, node: Node) -> None:
-        """Record the factors of a divisor in the text that may be zero; raise InputError if it is obviously zero."""
+        """Record those factors of a divisor that may be zero; raise InputError if the divisor is obviously zero."""
         # a zero that takes a proof, such as sin(x)**2 + cos(x)**2 - 1, is refused when the claim is decided
         if value.is_zero:
             raise self.fail(node, "a divisor that is not zero")
@@ -158,8 +157,9 @@ class Scope(ABC):
             raise self.fail(node, f"a smaller number under a root (at most {MOST_BITS_FACTORED} bits, to be factored)")
 
     def take_root(self, value: Expr, node: Node) -> None:
-        """Record ``value`` as a formula that must not be negative, as under a root; raise InputError if it is a
-        negative number.
+        """Record ``value``, a formula under a root, as one that must not be negative, unless it is such a number.
+
+        Raise InputError for a negative number, and for a number too long to be factored.
         """
         interval = enclosure(value) if value.is_number else None
         if (interval is None and value.is_negative) or (interval is not None and interval.b < 0):

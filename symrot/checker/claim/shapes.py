@@ -71,7 +71,10 @@ def _shape_of_call(node: Node, inner: list[Shape], shapes: Mapping[str, Shape]) 
 
 
 def with_unit_matrices(relation: tuple[str, Node, Node], shapes: Mapping[str, Shape]) -> tuple[str, Node, Node]:
-    """Return an equation with ``eye(3)`` for a scalar I or 1 that is added or equal to a matrix, as in ``R - I``."""
+    """Return an equation with ``eye(3)`` for a scalar I or 1 that is added or equal to a 3 x 3 matrix: R in ``R - I``.
+
+    Other square matrices get the unit matrix of their size.
+    """
     sign, *sides = relation
     if any(_is_name_of(*pair) for pair in (sides, sides[::-1])):
         # I = [[a, b], [c, d]] defines a matrix named I
@@ -85,15 +88,18 @@ def with_unit_matrices(relation: tuple[str, Node, Node], shapes: Mapping[str, Sh
 
 
 def _is_name_of(name: Node, matrix: Node) -> bool:
-    """Return whether an equation defines a matrix named I, as ``I = [[a, b], [c, d]]`` does."""
+    """Return whether an equation defines a matrix called as a unit matrix, as ``I = [[a, b], [c, d]]`` does.
+
+    A matrix of numbers alone is no definition.
+    """
     is_literal = matrix.kind == "list" or (matrix.kind == "call" and matrix.value == "Matrix")
     letters = [node for node in nodes_of(matrix) if node.kind == "name"]
     return name.kind == "name" and name.value in UNIT_MATRICES and is_literal and bool(letters)
 
 
 def added_names(relation: tuple[str, Node, Node], shapes: Mapping[str, Shape]) -> dict[str, Shape]:
-    """Return the names that are added to a vector or matrix, each with its shape: (3, 1) for a in
-    ``a + cross(w, r)``.
+    """Return the names without a shape that are added to a vector or matrix, each with the shape that it must have:
+    (3, 1) for a in ``a + cross(w, r)``.
     """
     added: dict[str, Shape] = {}
     for side in relation[1:]:
@@ -107,7 +113,7 @@ def added_names(relation: tuple[str, Node, Node], shapes: Mapping[str, Shape]) -
 
 
 def operand_names(relation: tuple[str, Node, Node], shapes: Mapping[str, Shape]) -> dict[str, Shape]:
-    """Return the names that must be vectors as arguments of cross, dot or skew, each with the shape (3, 1)."""
+    """Return the names without a shape that are arguments of cross, dot or skew, each with the shape (3, 1)."""
     calls = [node for node in nodes_of(*relation[1:]) if node.value in ("cross", "dot", "skew")]
     arguments = [argument for call in calls if call.kind == "call" and len(call.args) < 3 for argument in call.args]
     # in cross(r, m*v), these are r and v: a mass before a name is skipped
@@ -122,8 +128,8 @@ def _without_mass(tree: Node) -> Node:
 
 
 def multiplied_names(relation: tuple[str, Node, Node], shapes: Mapping[str, Shape]) -> dict[str, Shape]:
-    """Return the names that must be vectors, each with the shape (3, 1): v in ``R*v == w`` for a matrix R and a vector
-    w.
+    """Return the names without a shape that must be vectors, each with the shape (3, 1): v in ``R*v == w`` for a 3 x 3
+    matrix R and a vector w.
     """
     columns: dict[str, Shape] = {}
     for side, other in (relation[1:], relation[:0:-1]):

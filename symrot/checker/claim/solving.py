@@ -28,7 +28,7 @@ Solve = Callable[[Node], Node]
 takes I and returns ``(I/2)^(1/2)``."""
 
 Quantity = tuple[str, bool]
-"""A pair of a name and whether its rate is meant: ("x", False) is x, and ("x", True) is dx/dt."""
+"""A pair of a name and whether a time derivative is meant: ("x", False) is x, and ("x", True) is dx/dt or x''."""
 
 INVERSES = {"sin": "asin", "cos": "acos", "tan": "atan", "exp": "log", "log": "exp"}
 """Maps a function to the inverse function, by which an equation is solved for the argument."""
@@ -113,7 +113,7 @@ def with_highest_rate(left: Node, right: Node) -> tuple[Node, Node, Node] | None
     the other side.
 
     None unless the equation is linear in a single highest derivative, all derivatives are by time and of single names,
-    and there is another term.
+    and a term without the highest derivative has a quantity.
     """
     terms = [*terms_of(left), *map(negated, terms_of(right))]
     derivatives = {node for node in nodes_of(*terms) if is_derivative(node)}

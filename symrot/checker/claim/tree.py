@@ -235,10 +235,10 @@ _BINDING = {"sum": SUM, "neg": SUM, "product": PRODUCT, "inv": PRODUCT, "power":
 
 
 def text(node: Node, binding: int = 0) -> str:
-    """Return the text of a tree with the fewest brackets, ``x*(y + z)``; the whole in brackets if it ranks below
-    ``binding``.
+    """Return the text of a tree, with brackets for the order of operations: ``x*(y + z)``.
+
+    ``binding`` is the rank of the operation around the tree: below this rank, the whole text gets brackets.
     """
-    # ``binding`` is the rank of the operation around the tree: a sum in a product gets brackets
     own = _BINDING.get(node.kind, ATOM)
     if node.kind == "number" and node.value.denominator != 1:
         own = PRODUCT

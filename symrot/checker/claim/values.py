@@ -2,10 +2,12 @@
 
 import re
 from fractions import Fraction
+from math import isfinite
 
-from mpmath import iv
+from mpmath import iv, mpf, nstr
 
 from symrot.checker.claim.claims import Claim
+from symrot.checker.claim.scope import described, is_matrix
 from symrot.checker.decide.decision import decide_equation
 from symrot.checker.decide.equation import Equation
 from symrot.checker.typed.tokens import LONGEST_NUMBER
@@ -18,7 +20,7 @@ from symrot.exact.printing import as_text
 __all__ = ["decide_value"]
 
 MORE_DIGITS = 30
-"""Digits beyond the printed ones to which a value is computed."""
+"""A value is computed to this number of digits more than its printed text has characters."""
 
 _DECIMAL = re.compile(r"\s*([+-]?)(\d*)(?:\.(\d*))?(?:[eE]([+-]?\d{1,3}))?\s*", re.ASCII)
 
@@ -29,12 +31,14 @@ def decide_value(claim: Claim) -> Decision:
     Raises
     ------
     InputError
-        If the value contains symbols, or the printed text is not a decimal number.
+        If the value contains symbols or is a matrix, or the printed text is not a decimal number.
     """
     assert claim.value is not None
     where = claim.label("value")
     interpreter = claim.interpreter()
     value = interpreter.read(claim.value, claim.sources.get("value", ""), where)
+    if is_matrix(value):
+        raise InputError(f"{where}: expected a number, got {described(value)}")
     if getattr(value, "free_symbols", {1}):
         raise InputError(f"{where}: expected a number, got {as_text(value)}")
     printed, unit = _printed(claim.printed, claim.label("printed_value"))
@@ -52,12 +56,18 @@ def decide_value(claim: Claim) -> Decision:
     if low.b <= interval.a and interval.b <= high.a:
         return Decision("true")
     if interval.b < low.a or high.b < interval.a:
-        exact = f"{as_text(value)} = {float(interval.mid):.12g}.."
+        exact = f"{as_text(value)} = {_rounded(mpf(interval.mid))}.."
         return Decision("false", counterexample=Counterexample((), None, exact, claim.printed.strip()))
     return Decision(
         "undecided",
         reason="the value is too close to the middle between two roundings to tell its last digit",
     )
+
+
+def _rounded(value: mpf) -> str:
+    """Return a number with at most 12 digits as text, also one beyond the range of a float."""
+    number = float(value)
+    return f"{number:.12g}" if isfinite(number) and (number or not value) else nstr(value, 12)
 
 
 def _printed(text: str, where: str) -> tuple[Fraction, Fraction]:

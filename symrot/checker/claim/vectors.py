@@ -75,7 +75,7 @@ class Vector:
 
     @property
     def components(self) -> Node:
-        """The components as a tree: ``Matrix([a_x, a_y, a_z])``, or 0 and 1 for a coordinate axis."""
+        """The components as a tree: ``Matrix([a_x, a_y, a_z])``, numbers 0 and 1 for an axis, rows for a tensor."""
         if self.is_axis:
             place = "xyz".index(self.name) if self.place is None else self.place
             return column_vector([number(int(place == other)) for other in range(3)])
@@ -85,7 +85,7 @@ class Vector:
 
     @property
     def is_axis(self) -> bool:
-        """Whether the vector is a coordinate axis: x, y or z with a hat, or i, j or k of a basis."""
+        """Whether the vector is a coordinate axis: x, y or z with a hat, or a vector of a basis, such as i or e_x."""
         return self.place is not None or (self.unit and self.name in ("x", "y", "z"))
 
     def _entry(self, axes: str) -> Node:
@@ -107,7 +107,7 @@ def is_tensor(name: str) -> bool:
 def is_components(name: str, tree: Node) -> bool:
     """Return whether ``tree`` defines a vector or matrix ``name`` by names of components alone.
 
-    For the name a, this is true for ``Matrix([a_x, a_y, a_z])``.
+    For the name a, this is true for ``Matrix([a_x, a_y, a_z])``, and for a matrix with entries such as a_11 or a1.
     """
     if any(tree == Vector(name, timed, axes=axes).components for timed in (False, True) for axes in AXES):
         return True
@@ -120,6 +120,8 @@ def is_components(name: str, tree: Node) -> bool:
 
 def without_marks(sides: Sequence[Node], names: Mapping[str, bool]) -> tuple[list[Node], dict[str, bool]]:
     """Return a claim's sides without the marks of vectors, and the marked vectors (True for one with a hat).
+
+    A marked name that also has another meaning without a mark is changed, to ``I_tensor`` or ``q_vec``.
 
     Parameters
     ----------
@@ -165,9 +167,9 @@ def used_vectors(sides: Sequence[Node], names: Mapping[str, bool]) -> tuple[Vect
 
 
 def _axes(name: str, used: Collection[str]) -> str:
-    """Return the endings of the names of a vector's components: "123" if the names ``used`` contain ``a_1``.
+    """Return the endings of the names of a vector's components: "123" if ``used`` has a name such as ``a_1``.
 
-    They are "0123" or "1234" for a quaternion, and otherwise usually "xyz".
+    They are "0123" or "1234" for a quaternion, and otherwise "xyz" (but "123" for R).
     """
     numbers = [n for n in "01234" if f"{name}_{n}" in used or (n in "04" and f"{name}{n}" in used)]
     if {"0", "4"} & {*numbers} and {"1", "2", "3"} & {*numbers}:

@@ -88,9 +88,12 @@ def admits_name(context: Context, name: str, quantity: str) -> bool:
 
 
 def is_usual_for_body(context: Context, sequence: str) -> bool:
-    """Return whether books use an Euler sequence for the context's body: ZXZ or ZYZ for a top, any for other bodies."""
+    """Return whether books use an Euler sequence for the context's body: ZXZ or ZYZ for a top, any for other bodies.
+
+    True for any sequence if the context states one.
+    """
     is_top = context.body is not None and context.body.kind.title in TITLES_OF_TOPS
-    # the second angle of ZXZ and ZYZ tilts the axis of the top; a stated sequence is always accepted
+    # the second angle of ZXZ and ZYZ tilts the axis of the top
     return bool(context.sequence) or not is_top or sequence.upper() in ("ZXZ", "ZYZ")
 
 
@@ -152,7 +155,6 @@ def _has_axes(name: str, axes: str) -> bool:
     """
     _, bodies = LINES["about a transverse axis through the centre"]
     axis = re.search(r", ([xyz]) axis", name)
-    # only the directions of rods and round bodies are checked
     return axis is None or not bodies_of_formula(name) & {*bodies} or axis[1] in axes
 
 
@@ -182,8 +184,11 @@ def _where_else(place: str, line: str, name: str) -> str:
 
 
 def _is_radial(name: str, quantity: str) -> bool:
-    """Return whether the axis in a formula's ``name`` goes along the radius to a point of the rim or surface."""
-    # hardly anybody means it by "about a point of the rim", unless an index names it, as in I_x
+    """Return whether the axis in a formula's ``name`` goes along the radius to a point of the rim or surface.
+
+    False also if the index of ``quantity`` names the axis, as in I_x.
+    """
+    # hardly anybody means this axis by "about a point of the rim"
     return place_of(name) in (RIM, SURFACE) and quantity[-1:] not in INDICES and not _is_along(name, "about a tangent")
 
 
@@ -203,10 +208,9 @@ def place_exists(place: str) -> bool:
 
 
 def is_at_open_place(context: Context, name: str) -> bool:
-    """Return whether the context says "about the pivot", which may be anywhere, and a formula is for an axis through
-    one place of a body, such as an end.
+    """Return whether the context has words such as "about the pivot", which may be anywhere, and a formula is for an
+    axis through one place of a body, such as an end.
     """
-    # "about the pivot" leaves it open, since a pivot may be anywhere
     places = {context.place, *(meaning.place for meaning in context.meanings)}
     return bool(places & {*OPEN_PLACES} and place_of(name) and bodies_of_formula(name))
 
@@ -290,8 +294,9 @@ def plain(name: str) -> str:
 
 
 def guesses(context: Context, name: str, stated: str) -> list[str]:
-    """Return the words in a formula's ``name`` that neither the context nor ``stated``, the claim's own words,
-    imply.
+    """Return the words in a formula's ``name`` that neither the context nor ``stated``, the claim's own words, imply.
+
+    The words of a place make one text, "about an end", as do those of a frame.
     """
     # "moment of inertia z axis" is stated by I_zz
     words = [stated, context.frame, context.sequence, "moment of inertia" if "inertia" in stated else ""]
@@ -328,7 +333,7 @@ def is_place(words: str) -> bool:
 
 @lru_cache(maxsize=20_000)
 def _tokens(text: str) -> tuple[str, ...]:
-    """Return the words of a text without words such as "of"; words with several spellings have a uniform one."""
+    """Return the words of a text without single letters and words such as "of", in a uniform spelling."""
     return tuple(
         word
         for word in re.findall(r"[\w'/^-]+", plain_words(text).replace("-frame", " frame"))

@@ -20,7 +20,7 @@ FAMILIES: tuple[tuple[str, str, str], ...] = (
     ("phi", "theta", "psi"), ("alpha", "beta", "gamma"), ("yaw", "pitch", "roll"),
     ("theta_1", "theta_2", "theta_3"), ("q_1", "q_2", "q_3"),
 )  # fmt: skip
-"""Triples of letters that books use for the first, second and third angle."""
+"""Triples of letters that books use together for the three angles, usually in this order."""
 
 SPELLINGS = {"varphi": "phi", "vartheta": "theta", "Phi": "phi", "Theta": "theta", "Psi": "psi", "heading": "yaw",
              "bank": "roll"}  # fmt: skip
@@ -78,6 +78,8 @@ def letter_of_angle(name: str) -> str:
 
 def place_by_words(title: str, sequence: str) -> int | None:
     """Return the place (0, 1 or 2) of an angle in a sequence by its title, "yaw" or "spin angle"; None if unknown.
+
+    In a sequence such as ZXZ, yaw, pitch and roll are the first, second and third angle.
 
     Examples
     --------

@@ -96,7 +96,10 @@ class Body:
         return self.rest if self.kind.shape else ""
 
     def has(self, name: str) -> bool:
-        """Return whether the derived formula with this ``name`` is for this body or for bodies of any kind."""
+        """Return whether the derived formula with this ``name`` is for this body or for bodies of any kind.
+
+        The name must also agree with the axes and the motion of this body.
+        """
         phrases = bodies_of_formula(name)
         own = {phrase for phrase in phrases if phrase in self.formulas}
         if self.axes and own and (axis := re.search(r", ([xyz]) axis", name)) and axis[1] not in self.axes:
@@ -179,8 +182,8 @@ BODIES: tuple[Kind, ...] = (
     Kind("gyroscope", ("wheel", "gyroscopic wheel", "rotor"),
          ("a level axle", "steady precession", "of a top", "fast top")),
 )  # fmt: skip
-"""Every body that words can name; the longest matching phrase decides. All phrases have the article "a", also before
-a vowel."""
+"""Every body that words can name; the longest matching phrase decides. In phrases for formulas, the article is "a" also
+before a vowel."""
 
 ALONE = (" about one axis", " about the z axis")
 """Endings of the names of formulas for rotation about a fixed axis."""
@@ -198,7 +201,7 @@ _MOTION_WORDS = (
 )  # fmt: skip
 
 _LETTER = r"[A-Za-z](?:_?[A-Za-z0-9])?'?"
-_TERM = rf"(?!\d*[cmk]?m\b)\d{{0,9}}{_LETTER}(?:/\d{{1,9}})?"
+_TERM = rf"(?!\d*[cmk]?m\b)(?:[1-9]\d{{0,8}})?{_LETTER}(?:/[1-9]\d{{0,8}})?"
 _NOUNS = {
     "radius": ("base radius", "radius"), "length": ("length", "height"), "height": ("height", "length"),
     "inner": ("inner radius",), "outer": ("outer radius",), "ring": ("ring radius", "radius"),
@@ -211,8 +214,8 @@ _SIDES: dict[str, tuple[tuple[str, Fraction], ...]] = {
     "ellipsoid": ((r"(?:half|semi)-?\s?ax[ei]s", Fraction(1)), (r"diameters|full axes", Fraction(1, 2))),
     "other": ((r"(?:half|semi)[- ]?(?:sides?|edges?|ax[ei]s)", Fraction(2)), ("sides?|edges?", Fraction(1))),
 }  # fmt: skip
-"""Maps the shape of a body to pairs (noun for its dimensions, factor), as in "semi-axes a, b, c": the author's letter
-times the factor is symrot's dimension."""
+"""Maps "ellipsoid", or "other" for all other shapes, to pairs (pattern of a noun for the dimensions, factor), as in
+"semi-axes a, b, c": the author's letter times the factor is symrot's dimension."""
 
 _HARMLESS = re.compile(
     r"\b(uniform|homogeneous|rigid|solid|(of |with )?(constant|uniform) density|(of |with |and )?mass( [a-zA-Z]\b)?"

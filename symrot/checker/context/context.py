@@ -194,14 +194,14 @@ def _scaled(body: Body, symbol: str) -> str:
 
 
 def quantities_of(tree: Node) -> Iterator[str]:
-    """Yield the names in a formula's tree; for a time derivative of x, yield both ``dx`` and x."""
+    """Yield the names in a formula's tree; for a time derivative of x, yield ``dx``, x and t."""
     for node in nodes_of(tree):
         if (name := name_of(node)) is not None:
             yield name
 
 
 def letters_of(tree: Node) -> Iterator[str]:
-    """Yield the names in a formula's tree; for a time derivative of x, yield only ``dx``."""
+    """Yield the names in a formula's tree; for a derivative of x, yield only ``dx``."""
     name = name_of(tree)
     if name is not None:
         yield name
@@ -211,7 +211,7 @@ def letters_of(tree: Node) -> Iterator[str]:
 
 
 def name_of(tree: Node) -> str | None:
-    """Return the name that a tree is, x for ``x(t)`` and ``dx`` for its time derivative; None for any other formula."""
+    """Return the name that a tree is, x for ``x(t)`` and ``dx`` for its derivative; None for any other formula."""
     if is_derivative(tree):
         inner = name_of(tree.args[0])
         return None if inner is None else "d" * (len(tree.args) - 1) + inner

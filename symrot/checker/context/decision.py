@@ -148,8 +148,8 @@ def _by_context(claim: Claim, named: NamedFormula, verdict: Verdict) -> Verdict:
 
 
 def _without_context(claim: Claim, named: NamedFormula) -> tuple[Identification, ...]:
-    """Return the known formulas that would equal the claim if the context stated another point of the body, another
-    frame, or nothing.
+    """Return the known formulas that would equal the claim if the context stated the body without a point or axis, the
+    other frame, or nothing.
     """
     context = claim.context
     if context.body and (context.place or context.body.axes):
@@ -389,7 +389,7 @@ def _neatness(repair: Repair) -> tuple[bool, int]:
 
 
 def _equal(target: Any, value: Any) -> Decision | None:
-    """Return the decision on the equation ``value == target``; None if it cannot be decided."""
+    """Return the decision on the equation ``value == target``; None if the equation is refused, as for its size."""
     try:
         return decide_equation(Equation(value, target))
     except (InputError, TooLarge):

@@ -92,7 +92,6 @@ def with_guesses(context: Context, verdict: Verdict, stated: str) -> Verdict:
     """
     readings = sorted(verdict.recognised_as, key=lambda known: len(guesses(context, known.name, stated)))
     verdict, likeliest = replace(verdict, recognised_as=tuple(readings)), readings[0]
-    # a guess is a word in the formula's name that neither the context nor the claim's quantity states
     words = guesses(context, likeliest.name, stated)
     phrases = words[:1]
     for first, second in pairwise(words):

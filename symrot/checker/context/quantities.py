@@ -30,6 +30,7 @@ class Quantity:
     symbols : str
         A pattern of the symbols that derived formulas use for it; empty if they use none.
     unit : str
+        Its unit, "1" for a number; empty if its entries have several units.
     sign : str
         "minus" or "plus" for a product of inertia whose words say that it is defined with or without the minus sign.
     """

@@ -263,7 +263,6 @@ def _with_case(letters: str, kinds: Sequence[str]) -> str:
     fixed = {kind in ("space", "extrinsic", "fixed") for kind in kinds}
     if len(fixed) > 1:
         return ""
-    # ``kinds`` are words such as "body" and "extrinsic"
     return letters if not fixed else letters.lower() if fixed == {True} else letters.upper()
 
 

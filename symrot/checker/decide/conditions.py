@@ -29,7 +29,8 @@ PRODUCT_OF_INERTIA = re.compile(r"[IJP]_?(xy|yx|xz|zx|yz|zy|12|21|13|31|23|32)",
 inertia."""
 
 MOST_TERMS, LARGEST_DEGREE, MOST_LETTERS = 400, 24, 20
-"""The largest number of terms, degree and number of letters of a residual (left minus right) that is factored.
+"""Limits on the shortest residual (left minus right) of a claim: terms, degree and letters, beyond which nothing is
+factored.
 
 The difference of the traces of A B C and B A C has 48 terms in 27 letters; factoring it takes seconds.
 """
@@ -65,8 +66,8 @@ def requirements(
 
 
 def _shared_factors(ring: FormulaRing, numerators: Sequence[PolyElement]) -> list[PolyElement]:
-    """Return the irreducible factors that divide all ``numerators``; none if the polynomials are too large to be
-    factored.
+    """Return the irreducible factors that divide all ``numerators``; none if the shortest of these polynomials is too
+    large to be factored.
     """
     # each numerator is one of left minus right: where a shared factor is zero, all entries agree
     smallest = min(numerators, key=len)
@@ -126,11 +127,10 @@ def _classified(ring: FormulaRing, factor: PolyElement) -> Requirement | None:
 
 
 def _of_moments(factor: PolyElement, names: list[Expr], ring: FormulaRing, formula: Expr) -> Requirement | None:
-    """Return the condition ``I1 + I2 == I3`` for the factor I1 + I2 - I3; None for I1 + I2, which cannot be zero."""
+    """Return the condition ``I1 + I2 == I3`` for the factor I1 + I2 - I3; None for I1 + I2, which is positive."""
     coefficients = [int(factor[ring.ring.gens[ring.symbols[name]].leading_expv()]) for name in names]
     sides = [[str(n) for n, c in zip(names, coefficients, strict=True) if c * sign > 0] for sign in (1, -1)]
     if not all(sides):
-        # a sum of moments of inertia is positive and cannot be zero
         return None
     left, right = sorted(sides, key=lambda side: (-len(side), side))
     code = "requires_symmetric_top" if len(names) == 2 else "requires_condition"

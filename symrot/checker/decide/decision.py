@@ -119,7 +119,6 @@ def _without_divisor(condition: Any, equation: Equation) -> Any:
 
     A divisor abs(y) is dropped if the equation is proven to be true for y = 0.
     """
-    # the proof of sqrt(x**2*y**2) == x*y gives the condition x/abs(y) >= 0, which becomes x >= 0
     if not isinstance(condition, Requirement) or condition.strict or equation.hypotheses:
         return condition
     signs = []

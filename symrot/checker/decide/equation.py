@@ -41,7 +41,7 @@ class Equation:
     bases: tuple[Expr, ...] = ()
 
     def at(self, values: Mapping[Expr, Expr]) -> "Equation":
-        """Return the equation with values in place of some of its parts."""
+        """Return the equation with ``values`` in place of formulas in its sides, hypotheses and conditions."""
         parts = {field.name: getattr(self, field.name) for field in fields(self)}
         return Equation(**{
             name: tuple(each.xreplace(values) for each in part) if isinstance(part, tuple) else part.xreplace(values)
@@ -50,6 +50,7 @@ class Equation:
 
 
 def sides_of(equation: Equation) -> tuple[list[Expr], list[Expr], Shape]:
+    """Return the entries of the left and of the right side, and their shape; raise InputError if the shapes differ."""
     try:
         return matched_sides(equation.left, equation.right)
     except ShapeMismatch as mismatch:

@@ -40,7 +40,7 @@ CANDIDATES = 8
 text becomes the counterexample, a rational one if there is any."""
 
 OTHER_VALUES = tuple(Rational(n, d) for n, d in ((1, 1), (2, 1), (1, 2), (-1, 1), (3, 1), (-1, 3), (5, 7), (-3, 2)))
-"""Values for symbols that occur in no hypothesis."""
+"""Values for symbols to which a random point that obeys the hypotheses gives none."""
 
 
 NOWHERE = "there are no real values of the letters for which both sides are real numbers"

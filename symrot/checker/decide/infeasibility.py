@@ -189,7 +189,7 @@ class _Prover:
         return roots == int(at_zero)
 
     def squares(self, poly: PolyElement) -> list[tuple[Any, PolyElement]]:
-        """Return [(1, x), (2, y)] for ``x^2 + 2*y^2`` or its negative: pairs (d, l) with d > 0 and l linear; [] if
+        """Return [(1, x), (2, y)] for ``x^2 + 2*y^2`` or its negative: pairs (d, l) with d > 0 and l linear or 1; [] if
         impossible.
         """
         if max(map(sum, poly)) != 2:
@@ -201,7 +201,7 @@ class _Prover:
         return []
 
     def _completed(self, rest: PolyElement) -> list[tuple[Any, PolyElement]]:
-        """Return [(1, x), (2, y)] for ``x^2 + 2*y^2``: pairs (d, l) with d > 0 and l linear; [] if impossible."""
+        """Return [(1, x), (2, y)] for ``x^2 + 2*y^2``: pairs (d, l) with d > 0 and l linear or 1; [] if impossible."""
         squares = []
         for place in sorted(occurring([rest])):
             x = self.ring.gens[place]

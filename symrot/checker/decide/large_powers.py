@@ -106,7 +106,7 @@ def _angle_degree(argument: Expr, bases: Mapping[Expr, Fraction]) -> int:
     total = 0
     for term in argument.as_ordered_terms() if argument.is_Add else [argument]:
         number, atom = term.as_coeff_Mul()
-        constant = atom is pi and cyclotomic.needs_cyclotomic_field(int(number.q))
+        constant = atom is pi and cyclotomic.has_affordable_degree(int(number.q))
         if atom in bases and number.is_Rational:
             total += abs(int(Fraction(int(number.p), int(number.q)) / bases[atom]))
         else:
@@ -144,7 +144,6 @@ def shorter_powers(formulas: Sequence[Expr]) -> ShorterPowers | None:
         same, power = next(((other, power) for other in bases for power in range(1, HIGHEST_OF_BASE + 1)
                             if _equal_up_to_sign(base, other**power)), (base, 1))  # fmt: skip
         bases.setdefault(same, {})[base] = power
-    # there is no large power, or there are too many different bases
     if not large or len(bases) > MOST_BASES:
         return None
     values: dict[Expr, Expr] = {}

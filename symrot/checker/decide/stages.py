@@ -145,7 +145,10 @@ def domain_of_text(case: ClaimCase) -> None:
 
 
 def nearby_witness(case: ClaimCase) -> None:
-    """Search rational points, or a few points that obey the hypotheses, for a counterexample; store it in ``case``."""
+    """Search rational points and a few points that obey the hypotheses for a counterexample; store it in ``case``.
+
+    Without hypotheses, points in closed form, such as pi/6, take the place of the latter. Set ``case.numerators`` too.
+    """
     ring, hypotheses = case.ring, case.hypotheses
     case.numerators = [ring.reduce(case.residuals[place].numerator) for place in case.unproven]
     closed_form = hypotheses.checked(closed_form_witness)

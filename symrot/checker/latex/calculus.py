@@ -196,7 +196,10 @@ class CalculusPart(NamesPart):
         return derivative
 
     def over_body(self) -> Node:
-        r"""Parse ``\int x^2\,dm``, an integral over a body of unknown shape; return its tree."""
+        r"""Parse the rest of ``\int x^2\,dm``, an integral over a body of unknown shape; return the integral's tree.
+
+        The integral over time ``\int M\,dt`` without limits gets the limits t_initial and t_final.
+        """
         self.script("_")
         self.integrals += 1
         integrand = number(1) if self.differential() else self.expression()

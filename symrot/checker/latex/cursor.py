@@ -77,7 +77,8 @@ class Names:
         if node.kind == "name":
             return node.value in self.columns
         if node.kind == "call" and node.value == "Matrix":
-            return len(node.args[0].args[0].args) == 1
+            first = node.args[0].args[0]
+            return first.kind != "list" or len(first.args) == 1
         if node.kind == "call":
             return node.value in ("cross", "vee") or (node.value == "diff" and self.is_column(node.args[0]))
         if node.kind == "product":

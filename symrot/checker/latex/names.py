@@ -192,7 +192,9 @@ class NamesPart(SumsPart):
 
     def derivative(self, node: Node, times: int, item: tree.Node) -> Node:
         """Return the time derivative of a formula, of the order ``times``, and make an undeclared name a function of
-        time. If the claim declares a symbol for the rate, such as dx for that of x, return this symbol.
+        time; raise InputError if all names must be declared.
+
+        If the claim declares a symbol for the rate of x, such as dx, return this symbol for the first derivative.
         """
         if node.kind == "name" and node.value not in (*self.names.functions, *self.names.matrices, *self.names.others):
             name = str(node.value)
@@ -202,12 +204,14 @@ class NamesPart(SumsPart):
                 return Node("name", declared[0])
             if not self.names.implied:
                 raise self.fail(f"{name} to be declared as a function of t (it is differentiated)", item)
-            # an undeclared name becomes a function of time
             self.timed.add(name)
         return differentiated(node, TIME, times)
 
     def take_time_call(self, name: str) -> None:
-        """Skip ``(t)`` after the function of time ``name``; raise InputError for brackets with another argument."""
+        """Skip ``(t)`` after the function of time ``name``; raise InputError for ``(x)`` or ``(0)`` after a name.
+
+        Only ``Omega(omega)``, a matrix, may have such brackets.
+        """
         if self.called_with_time() and (
             name in self.names.functions or (self.names.implied and name not in self.names)
         ):

@@ -60,7 +60,7 @@ def read_latex(source: str, where: str = "", names: Names | None = None) -> Equa
     Raises
     ------
     InputError
-        With the position of the first token that cannot be read.
+        If the text cannot be read, has several equations, or is ambiguous.
 
     Examples
     --------
@@ -82,7 +82,7 @@ def latex_readings(source: str, names: Names | None = None) -> list[Reading]:
     Raises
     ------
     InputError
-        With the position of the first token that cannot be read.
+        If the text cannot be read.
 
     Examples
     --------

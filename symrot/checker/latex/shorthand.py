@@ -182,10 +182,10 @@ def _is_angle(piece: Token) -> bool:
 
 
 def _subscript(pieces: Sequence[Token], place: int) -> str:
-    """Return the subscript that starts at ``place``, if it is one Greek letter or a number; otherwise an empty text."""
+    r"""Return the subscript that starts at ``place``, if it is a command, such as ``\alpha``, or a number; else ""."""
     grouped = pieces[place].text == "{"
     inner = pieces[place + grouped]
-    if grouped and pieces[place + 2].text != "}":
+    if grouped and [piece.text for piece in pieces[place + 2 : place + 3]] != ["}"]:
         return ""
     return inner.text.removeprefix("\\") if inner.kind in ("command", "number") else ""
 

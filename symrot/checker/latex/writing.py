@@ -71,7 +71,7 @@ class LatexNotation:
 def latex_of(
     relation: Relation, functions: Collection[str] = (), vectors: Mapping[str, bool] = NO_VECTORS
 ) -> str | None:
-    """Return the LaTeX of an equation, or None if parsing it would not give the same equation.
+    """Return the LaTeX of an equation; None if parsing it would not give the same equation, and for inequalities.
 
     Parameters
     ----------
@@ -200,7 +200,6 @@ class Writer:
         last = None
         for factor in node.args:
             if factor.kind == "inv":
-                # each divisor is below the factor before it
                 above = "1" if last is None else self.formula(last)
                 if last is not None:
                     pieces.pop()

@@ -133,7 +133,7 @@ def _related() -> Iterator[Named]:
         yield f"relation for {relation.title}", relation.source, primitive(relation.difference)
 
 
-SCALAR_PRODUCTS = ("power of a torque", "kinetic energy from the angular momentum")
+SCALAR_PRODUCTS = ("power of a torque", "kinetic energy of rotation from the angular momentum")
 """Names of formulas that are a scalar product a . b. Every scalar product equals such a formula; so a claim means it
 only with the letters that books use for its two vectors."""
 
@@ -175,7 +175,7 @@ def _selected(
 
 @cache
 def ending_of(name: str) -> str:
-    """Return the end ", squared" or ", acos" of a known formula's name, or "" if the name has no such end."""
+    """Return the end of a known formula's name, such as ", squared" or ", 2 atan2"; "" without such an end."""
     # the formula then is a function of the quantity: its square, cosine, or half angle's cosine
     ending = re.search(r", (squared|(\S+ )?(acos|asin|atan2))$", name)
     return ending[0] if ending else ""

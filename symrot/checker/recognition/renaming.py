@@ -41,8 +41,9 @@ ANGLES = {*MIDDLE, *OUTER}
 def is_consistent(renaming: Sequence[tuple[str, str]], fixed: bool = False) -> bool:
     """Return whether pairs (known name, new name) agree on the axes: not so for (omega_1, omega_x) with (I_1, I_y).
 
-    With ``fixed``, each axis keeps its number: 1 becomes 1 or x. Otherwise the axes may be exchanged in a cycle: 1 to
-    y, 2 to z and 3 to x.
+    Pairs also disagree if they join or split a quantity, exchange an initial with a final value, or exchange the middle
+    one of three Euler angles with an outer one. With ``fixed``, each axis keeps its number: 1 becomes 1 or x. Otherwise
+    the axes may be exchanged in a cycle: 1 to y, 2 to z and 3 to x.
     """
     pairs = [_pair_of_quantities(known, new) for known, new in renaming]
     if len({*pairs}) != len({known for known, _ in pairs}) or len({*pairs}) != len({new for _, new in pairs}):
@@ -52,7 +53,6 @@ def is_consistent(renaming: Sequence[tuple[str, str]], fixed: bool = False) -> b
     angles = [pair for pair in pairs if pair[0] in ANGLES and pair[1] in ANGLES]
     if len(angles) > 1 and any((known in MIDDLE) != (new in MIDDLE) for known, new in angles):
         return False
-    # if fixed, 1 becomes 1 or x; otherwise axes may be exchanged in a cycle, 1 to y, 2 to z, 3 to x
     plain = transposed = frozenset(CYCLIC[: 1 if fixed else None])
     for known, new in pairs:
         orders, reversed_orders = _orders(known, new)
@@ -64,7 +64,7 @@ def is_consistent(renaming: Sequence[tuple[str, str]], fixed: bool = False) -> b
 
 @cache
 def _pair_of_quantities(known: str, new: str) -> tuple[str, str]:
-    """Return (phi, psi) for ``dphi`` and ``diff(psi(t), t)``; a pair whose second name is no rate stays as it is."""
+    """Return (phi, psi) for ``dphi`` and ``diff(psi(t), t)``; the given names if ``new`` is no rate and no ``x(t)``."""
     quantity = quantity_of(new)
     return (quantity_of(known), quantity) if quantity != new else (known, new)
 
@@ -129,7 +129,10 @@ def quantity_of(name: str) -> str:
 
 @cache
 def axes_of(name: str) -> frozenset[int]:
-    """Return the axes that a name states: {1, 2} for I_xy, {3} for omega_3, empty for omega."""
+    """Return the axes that a name states: {1, 2} for I_xy, {3} for omega_3, empty for omega.
+
+    The axis 0 means the scalar part of a quaternion, as in q_0.
+    """
     name = re.sub("(_bar|_prime)+$", "", name)
     if re.fullmatch(r"[IJk]_?0|(omega|theta|v)_?0", name):
         return frozenset()  # a moment about a point O, or a value at the start

@@ -14,7 +14,7 @@ from symrot.exact.printing import as_text
 __all__ = ["MOST_TRIES", "name_of", "pairings"]
 
 MOST_TRIES = 720
-"""The largest number of ways to pair the symbols of two formulas that are tried.
+"""The largest number of ways to pair the symbols of two formulas that are tried; also of each group with one signature.
 
 Only symbols with equal signatures, which :class:`Fingerprint` describes, can be paired.
 """
@@ -34,7 +34,6 @@ def pairings(theirs: Fingerprint, own: Fingerprint, order: Sequence[int]) -> Ite
     Yield nothing if that leaves symbols unpaired. ``order`` are indices of entries of the claim's formula, if this is a
     matrix, in the order of the known formula's entries.
     """
-    # symbols are paired if their signatures are equal; pairs with equal names come first
     mine: dict[Values, list[Expr]] = {}
     for atom, row in zip(own.atoms, own.rows(order), strict=True):
         mine.setdefault(row, []).append(atom)
@@ -56,7 +55,7 @@ def pairings(theirs: Fingerprint, own: Fingerprint, order: Sequence[int]) -> Ite
 
 
 def _nearest(atoms: Sequence[Expr], others: Sequence[Expr]) -> list[tuple[Expr, ...]]:
-    """Return the symbols ``others`` in several orders, the most plausible order first.
+    """Return the symbols ``others`` in at most MOST_TRIES orders, the most plausible order first.
 
     In each order, the symbols are to be paired one by one with ``atoms``, the symbols of another formula.
     """

@@ -14,9 +14,10 @@ PLACE = re.compile(r"(first|second|third|scalar) component of the |, ([xyz]) axi
 
 
 def fit_together(lines: Sequence[tuple[str, Collection[str], Verdict]]) -> bool:
-    """Return whether several recognised equations can be components of one quantity: of one body, frame and sequence.
+    """Return whether recognised equations can be components of one quantity: of one body, frame and sequence.
 
-    Each of ``lines`` is (name of the left side, names in the formula, verdict).
+    Each of ``lines`` is (name of the left side, names in the formula, verdict). Only equations whose names differ in
+    the index alone, such as L_1 and L_2, are compared.
     """
     groups: dict[str, list[list[tuple[Identification, dict[str, str]]]]] = {}
     for name, letters, verdict in lines:
@@ -35,10 +36,13 @@ def _meanings(known: Identification, letters: Collection[str]) -> dict[str, str]
 
 
 def _fit(choice: Sequence[tuple[Identification, dict[str, str]]]) -> bool:
-    """Return whether known formulas, one for each equation, can be different components of one quantity."""
+    """Return whether known formulas, one for each equation, can be different components of one quantity.
+
+    True also if one of them is not for a component.
+    """
     places = [tuple(_places(known.name)) for known, _ in choice]
     if not all(places):
-        return True  # a formula that is not for a component: nothing is compared
+        return True
     wholes = {PLACE.sub("", known.name) for known, _ in choice}
     meanings: dict[str, str] = {}
     # each letter of the claim must stand for the same symbol everywhere

@@ -50,7 +50,7 @@ def _base_and_exponent(factor: Node) -> tuple[Node, Fraction]:
 def with_ordered_products(tree: Node, is_matrix: Callable[[Node], bool]) -> Node:
     """Return a tree with sorted vectors and no scalars in dot and cross products.
 
-    ``cross(m*v, a)`` becomes ``-m*cross(a, v)``.
+    ``cross(m*v, a)`` becomes ``-m*cross(a, v)``. A product with an argument that is no matrix keeps its arguments.
     """
     args = tuple(with_ordered_products(child, is_matrix) for child in tree.args)
     made = replace(tree, args=args)
@@ -82,7 +82,7 @@ def terms_of_equation(left: Node, right: Node, is_matrix: Callable[[Node], bool]
             core, size = _without_number(term)
             totals[core] = totals.get(core, Fraction(0)) + sign * size
     terms = sorted(((core, size) for core, size in totals.items() if size), key=lambda pair: text(pair[0]))
-    # empty for equal sides; divided by the first coefficient, so that multiples of an equation give the same terms
+    # divided by the first coefficient, so that multiples of an equation give the same terms
     return frozenset((core, size / terms[0][1]) for core, size in terms)
 
 

@@ -73,10 +73,13 @@ def _scaled(claim: Claim, factors: Sequence[Node], matrix: Node) -> Node | None:
 
 
 def _largest_factor(entries: Sequence[Expr]) -> Any:
-    """Return the greatest common divisor of the coefficients of all entries: 2/3 for ``2*a/3`` and ``4*b``."""
+    """Return the greatest common divisor of the coefficients of all entries: 2/3 for ``2*a/3`` and ``4*b``.
+
+    Return 1 if a coefficient is irrational, or if all entries are zero.
+    """
     numbers = [entry.as_coeff_Mul()[0] for entry in entries if entry != 0]
     if not numbers or not all(value.is_Rational for value in numbers):
-        return Rational(1)  # for irrational coefficients
+        return Rational(1)
     return Rational(reduce(gcd, (abs(value.p) for value in numbers)), reduce(lcm, (value.q for value in numbers)))
 
 

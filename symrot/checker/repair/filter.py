@@ -123,7 +123,7 @@ class NumericFilter:
         if place in SIDES:
             return is_nontrivial(tree) or not is_nontrivial(self.tree_at(place))
         order = list(self.definitions)
-        later = set(order[order.index(place) :])  # a definition uses neither its own name nor a later one
+        later = set(order[order.index(place) :])
         return is_nontrivial(tree) and not any(node.kind == "name" and node.value in later for _, node in walk(tree))
 
     def edited(self, changes: Sequence[Change]) -> Claim:
@@ -158,7 +158,6 @@ class NumericFilter:
         It returns False in an entry of a written-out matrix, unless this entry is the only wrong one.
         """
         cells = matrix_entries(tree) if place in SIDES else {}
-        # an entry of a written-out matrix may change only if no other one is wrong
         alone = [cells[number] for number in self.wrong if number in cells] if len(self.wrong) == 1 else []
         return OpenEntries(tuple(cells.values()), tuple(alone))
 
@@ -211,9 +210,10 @@ class NumericFilter:
     def holds(self, changes: Sequence[Change]) -> bool:
         """Return whether the claim after ``changes`` is true at the test points.
 
-        False also if both sides have become zero, or if the budget of evaluations is spent.
+        False also if there are no test points, if the budget of evaluations is spent, or if both sides have become
+        zero; but both may be zero if a side of the claim itself has no letters and functions, as in ``x == 0``.
         """
-        if not self.affordable():
+        if not self.points or not self.affordable():
             return False
         for point in self.points:
             try:
@@ -223,16 +223,15 @@ class NumericFilter:
                 return False
             if same is None or not all(same):
                 return False
-        # False if both sides have become zero
         return any(entries_of(left)) or not (is_nontrivial(self.left) and is_nontrivial(self.right))
 
     def differences(self, point: Point, changes: Sequence[Change]) -> list[float]:
-        """Return left minus right of an edited claim at a point, for each entry.
+        """Return left minus right of an edited claim at a point, for each entry; 0 is a zero of every shape.
 
         Raises
         ------
         UndefinedValue
-            If a side has no value, or the shapes differ.
+            If a side has no value, or the sides have different numbers of entries.
         """
         left, right = (entries_of(value) for value in self.sides(point, changes))
         size = max(len(left), len(right))
@@ -242,7 +241,10 @@ class NumericFilter:
         return [a - b for a, b in zip(left, right, strict=True)]
 
     def fingerprint(self, changes: Sequence[Change]) -> tuple[float, ...]:
-        """Return rounded values of both sides after ``changes``, at one test point."""
+        """Return the values of both sides after ``changes`` at the first test point, rounded to 9 digits.
+
+        Raise UndefinedValue if a side has no value there.
+        """
         # repairs with equal values are most likely the same formula, written in two ways
         left, right = self.sides(self.points[0], changes)
         return tuple(float(f"{value:.9g}") for value in (*entries_of(left), *entries_of(right)))

@@ -75,7 +75,7 @@ def missing_terms(numeric: NumericFilter) -> Iterator[Candidate]:
 
 
 def _short_form(formula: Expr, hypotheses: Sequence[Any]) -> Expr:
-    """Return the normal form of the difference of two sides under the hypotheses; 0 if it vanishes.
+    """Return the normal form of ``formula``, the difference of two sides; 0 if it vanishes under the hypotheses.
 
     Raise TooLarge if the normal form is long.
     """
@@ -125,7 +125,10 @@ def _inside(
 
 
 def missing_matrices(numeric: NumericFilter) -> Iterator[Candidate]:
-    """Yield repairs that multiply a matrix in a side by a named matrix of the claim: ``R*J*R^T`` for ``R*J``."""
+    """Yield repairs that multiply a matrix in a side by a named matrix of the claim, or by its transpose.
+
+    ``R*J`` becomes ``R*J*R^T``. A claim with a side 0 gets none.
+    """
     named = [Node("name", name) for name in sorted(numeric.matrix_names)]
     factors = [*named, *(Node("transpose", None, (by,)) for by in named)]
     for place in numeric.sides_to_edit:

@@ -62,7 +62,7 @@ def _differences(numeric: NumericFilter, changes: Sequence[Change]) -> Effects:
     """Return left - right of the claim at the first test point, and {index in ``changes``: effect of the edit}.
 
     The effect is how much the edit reduces left - right, for each matrix entry. Edits that leave a side without a value
-    are left out.
+    or change its number of entries are left out, and all further ones when the budget of evaluations is spent.
     """
     point = numeric.points[0]
     whole = tuple(numeric.differences(point, ()))
@@ -83,7 +83,7 @@ def _quotients(numeric: NumericFilter, changes: Sequence[Change]) -> Effects:
     """Return left/right of the claim at the first test point, and {index in ``changes``: factor of the edit}.
 
     The edit divides left/right by this factor. Both results are empty for matrices, and if a side of the claim is zero.
-    Only edits of the left or the right side have an entry, not those of a definition that the claim uses.
+    Edits of a definition that the claim uses are left out, and edits after which a side is zero or has no value.
     """
     point = numeric.points[0]
     left, right = (entries_of(side) for side in numeric.sides(point, ()))

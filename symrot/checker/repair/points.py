@@ -130,8 +130,11 @@ class Point:
         return Point(self.symbols, self.functions, {**self.definitions, name: node}, spent=self.spent)
 
     def raised(self, variable: Node) -> "Point":
-        """Return a copy of the point whose values are dual numbers; their slopes are derivatives by ``variable``."""
-        # variable: a symbol, f(t), or diff(f(t), t)
+        """Return a copy of the point whose values are dual numbers; their slopes are derivatives by ``variable``.
+
+        The variable is a symbol, ``f(t)`` or ``diff(f(t), t)``. Raise UndefinedValue if it has no value at the point,
+        or if the point's weight exceeds HEAVIEST.
+        """
         order = 0
         inner = variable
         while is_derivative(inner):
@@ -411,6 +414,8 @@ def _onto_hypotheses(point: Point, hypotheses: Sequence[tuple[Node, Node]]) -> P
                 slopes += list(zip(*columns, strict=True))
         except UndefinedValue:
             return None
+        if not np.isfinite([*residuals, *(slope for row in slopes for slope in row)]).all():
+            return None  # beyond the range of double precision
         if max(map(abs, residuals)) < 1e-14:
             return point
         step = np.linalg.lstsq(np.array(slopes), -np.array(residuals), rcond=None)[0]

@@ -145,7 +145,7 @@ def rotation_of_quaternion(*q: Any) -> Rows:
 
 
 def agree(left: Any, right: Any) -> list[bool] | None:
-    """Return, for each entry, whether two values agree to about eight digits; 0 is a zero of every shape.
+    """Return, for each entry, whether two values agree to about eight digits or 1e-11; 0 is a zero of every shape.
 
     None if the shapes differ.
     """

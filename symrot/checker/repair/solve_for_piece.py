@@ -57,7 +57,7 @@ Values = tuple[float, ...]
 
 @dataclass(frozen=True)
 class Entry:
-    """A product of symbols and functions of the claim, with its values at the test points."""
+    """A product of symbols, functions, sums or terms of the claim, with its values at the test points."""
 
     factors: tuple[Node, ...]
     values: Values
@@ -251,9 +251,9 @@ def _candidate(numeric: NumericFilter, place: str, path: Path, made: Node, edit:
 def _needed(numeric: NumericFilter, place: str, path: Path, made: Node, start: Values) -> Values | None:
     """Return the values that the unknown ``HOLE`` in ``made`` must have if ``made`` replaces the part at ``path``.
 
-    There is one value for each test point; None if the search for a value fails.
+    ``place`` is the side or definition with this part. There is one value for each test point, sought from ``start``
+    on; None if the search fails.
     """
-    # the unknown is the node HOLE in made, which replaces the part at path of a side or definition
     tree = replaced(numeric.tree_at(place), path, made)
     if place not in SIDES and not numeric.sensible(place, tree):
         return None
@@ -314,8 +314,11 @@ def _corrections(
     is_term: bool,
     is_outer: bool,
 ) -> Iterator[Correction]:
-    """Yield (formula, (code, cost) of the fault) for formulas with the values ``needed`` that may replace ``piece``."""
-    # values: of piece as it is; is_term: piece is a term of a sum; is_outer: it is a side, or directly below a side
+    """Yield (formula, (code, cost) of the fault) for formulas with the values ``needed`` that may replace ``piece``.
+
+    ``values`` are the present values of the piece. ``is_term`` says whether it is a term of a sum, ``is_outer`` whether
+    it is a side of the claim, or a term or factor of a side.
+    """
     if all(abs(b) <= CLOSE * abs(a) for a, b in zip(values, needed, strict=True)):
         return  # the piece would have to vanish
     ratios = tuple(b / a for a, b in zip(values, needed, strict=True))
@@ -354,8 +357,11 @@ def _corrections(
 
 
 def _is_multiple_of_term(vocabulary: Vocabulary, piece: Node, lacking: Values) -> bool:
-    """Return whether ``lacking`` is a multiple of a term of ``piece``: of b, if ``a + 2*b`` should be ``a + 3*b``."""
-    # such a piece has the right terms; lacking: the needed values minus the values of piece
+    """Return whether ``lacking`` is a multiple of a term of ``piece``: of b, if ``a + 2*b`` should be ``a + 3*b``.
+
+    ``lacking`` are the values that the piece should have minus its present values.
+    """
+    # such a piece has the right terms
     for node in piece.args if piece.kind == "sum" else (piece,):
         values = vocabulary.values(node)
         if values and _rational([a / b for a, b in zip(lacking, values, strict=True)]) is not None:
@@ -413,7 +419,9 @@ def _of_matrix(
 
 
 def _matrices(numeric: NumericFilter, piece: Node) -> list[Node]:
-    """Return matrices with the shape of ``piece``: those of the claim, their transposes, products of two of them."""
+    """Return at most MOST_MATRICES matrices with the shape of ``piece``: parts of the claim, its named matrices, their
+    transposes, and products of two of the named or transposed ones.
+    """
     shape = _shape(numeric, piece)
     written = [node for place in numeric.places for _, node in walk(numeric.tree_at(place)) if numeric.is_matrix(node)]
     named = [Node("name", name) for name in sorted(numeric.matrix_names)]

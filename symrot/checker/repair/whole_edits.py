@@ -32,10 +32,10 @@ MOST_PIECES_AFTER = 240_000
 
 
 def after_whole_edits(numeric: NumericFilter, changes: Sequence[Change]) -> Iterator[Candidate]:
-    """Yield repairs that are true at the test points, each with two changes of the claim.
+    """Yield repairs that each undo two faults of the claim.
 
-    The first is one of ``changes`` and undoes a fault in ``WHOLE``, such as a wrong sign of a whole side. The second
-    undoes any other fault; both may change the same side.
+    The first change is one of ``changes`` and undoes a fault in ``WHOLE``, such as a wrong sign of a whole side. The
+    second undoes any other fault; both may change the same side.
     """
     for first in islice((change for change in changes if change.edit.code in WHOLE), MOST_WHOLE):
         claim = numeric.edited([first])

@@ -43,10 +43,10 @@ def verdict_on_parts(
 ) -> Verdict:
     """Return the worst verdict on the equations of a chain or of several lines, with a note on each.
 
-    Definitions of names that other lines use do not count. The verdict is "doubtful" if each equation is recognised,
-    but as formulas of different bodies, frames or sequences.
-    ``verdicts`` are the verdicts on the equations of ``lines``, in order. If ``has_units``, the first side of a chain
-    is a number with a unit, not a name.
+    Definitions of names that other lines use do not count, unless there is nothing else. The verdict is "doubtful" if
+    each equation is recognised, but as formulas of different bodies, frames or sequences. ``verdicts`` are the verdicts
+    on the equations of ``lines``, in order. If ``has_units``, the first side of a chain is a number with a unit, not a
+    name.
     """
     remaining = iter(verdicts)
     counted, notes = [], []

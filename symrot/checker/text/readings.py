@@ -70,14 +70,16 @@ def verdict_on_readings(
     readings: Sequence[Reading], notation: Callable[[Reading], Notation], source: str, assume: Sequence[str] = (),
     units: Mapping[str, str] | None = None, repair: bool = True, stated: Context = NO_CONTEXT,
 ) -> Verdict:  # fmt: skip
-    """Return the verdict on the likeliest interpretation of a text, with notes on those whose verdict differs.
+    """Return the verdict on the likeliest interpretation of a text, with a note on any other whose verdict differs.
+
+    ``notation(reading)`` tells how the formulas of an interpretation are written; the other arguments are as in
+    :func:`verdict_on_text`.
 
     Raises
     ------
     InputError
         For text that cannot be read, with the place, and for a text of which no reading has a meaning.
     """
-    # notation: interpretation -> how its formulas are written; other arguments as in verdict_on_text
     verdicts: list[tuple[Reading, Verdict]] = []
     refusal: InputError | None = None
     late = False

@@ -65,7 +65,10 @@ class WordReader:
         return (kind, start) in self.flips
 
     def products(self, alone: Collection[str], vectors: Collection[str]) -> dict[str, tuple[str, ...]]:
-        """Return the factors of each word that is a product: {"mgl": ("m", "g", "l")}."""
+        """Return the parts of each word that is read as a product: {"mgl": ("m", "g", "l")}.
+
+        Also of a function whose raised digit was lost: {"sin2": ("sin", "^", "2")}.
+        """
         words: dict[str, tuple[str, ...]] = {}
         short = {self.tokens[form.place].text for form in shorthands_of_letters(self.tokens)}
         alone = {*alone} | ({"x", "y", "z"} if any(token.text == "∫" for token in self.tokens) else set())

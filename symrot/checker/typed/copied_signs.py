@@ -1,7 +1,8 @@
 """Normalising a copied text, so that the readers of claims understand it.
 
-Commas in thousands are left out; ≈ before a rounded value becomes =; braces used as brackets become brackets; and
-definitions after "where" are moved to the front.
+Commas in thousands are left out; ≈ before a rounded value becomes =; factorials are computed; and braces used as
+brackets become brackets. In LaTeX, raised digits and fractions become commands, and definitions after "where" are moved
+to the front.
 """
 
 import re

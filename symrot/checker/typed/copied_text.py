@@ -93,6 +93,8 @@ def _without(pattern: re.Pattern[str], text: str) -> tuple[list[str], str]:
 def _clauses(text: str) -> tuple[str, list[str]]:
     """Return ``text`` with blanks for clauses without an equation, such as "m is the mass", and the list of these
     clauses.
+
+    In the text, a semicolon replaces each "and" between clauses, and blanks the words after an equation.
     """
     left_out: list[str] = []
 

@@ -205,7 +205,10 @@ class Cursor(ABC):
         return Node("call", function, tuple(arguments), self.span(token.start))
 
     def numeral(self, token: Token) -> Node:
-        """Return the node of the number ``token``; raise InputError if it has too large an exponent."""
+        """Return the node of the number ``token``.
+
+        Raise InputError if it has too large an exponent, or an exponent directly before a name, as in ``2e3x``.
+        """
         exponent = re.split("[eE]", token.text)[1:]
         if exponent and abs(int(exponent[0])) > LONGEST_NUMBER:
             raise self.fail(f"a power of ten with an exponent up to {LONGEST_NUMBER}", token.start)
@@ -214,8 +217,9 @@ class Cursor(ABC):
         return Node("number", Fraction(token.text), (), self.span(token.start))
 
     def starts_factor(self) -> bool:
-        """Return whether another factor, without a product sign before it, starts at the cursor; raise InputError if it
-        is a number.
+        """Return whether another factor, without a product sign before it, starts at the cursor.
+
+        Raise InputError if a number, a fraction such as ½ or an English word such as "and" is there.
         """
         token = self.token()
         if self.in_integral and self.is_element():
@@ -232,7 +236,7 @@ class Cursor(ABC):
         return self.token().text == self.element
 
     def end_of_run(self) -> int:
-        """Return the position in the text at which the factor that starts at the cursor ends."""
+        """Return the position in the text after the token at the cursor; for a bracket, after its closing one."""
         depth = 0
         for token in self.tokens[self.index :]:
             depth += (token.text in ("(", "[")) - (token.text in (")", "]"))
@@ -241,7 +245,10 @@ class Cursor(ABC):
         return len(self.source)
 
     def is_vector(self, node: Node) -> bool:
-        """Return whether a formula is a vector: a list, a cross product, or a name that the text uses as a vector."""
+        """Return whether a formula is a vector: a list, a cross product, or a name that the text uses as a vector.
+
+        Sums, products and derivatives of vectors are vectors too.
+        """
         if node.kind == "name":
             return node.value in self.vocabulary.vectors
         if node.kind == "call":

@@ -1,4 +1,4 @@
-"""Functions that are defined by other functions: coth, sech, csch, their inverses, and arg."""
+"""Functions that are defined by other functions: coth, sech, csch, the inverses of hyperbolic functions, and arg."""
 
 from collections.abc import Callable, Mapping
 
@@ -43,7 +43,6 @@ The formulas of the inverses give their principal values.
 INVERSES = {name: f"a{name}" for name in ("sin", "cos", "tan", "sinh", "cosh", "tanh", "coth", "sech", "csch")}
 """Function -> its inverse, which ``sin^-1 x`` usually means."""
 
-# no formulas: books disagree on the values of these inverses
 DISPUTED = {"cot": "atan(1/x) or pi/2 - atan(x)", "sec": "acos(1/x)", "csc": "asin(1/x)"}
 """Function -> what to write instead of its inverse, whose values for x < 0 differ from book to book."""
 
@@ -53,5 +52,4 @@ DISPUTED_NAMES = {f"{prefix}{name}": name for name in DISPUTED for prefix in ("a
 
 def instead(name: str) -> str:
     """Return words for an error message on acot, asec or acsc, the inverse of the function ``name``."""
-    # for x < 0, books define arccot differently
     return f"{DISPUTED[name]} instead of the inverse function of {name} (books differ on it for x < 0)"

@@ -12,7 +12,8 @@ OPERATORS = ("+", "-", "*", "/", "^", "**", "·", "×", "⊗")
 def lines_of(tokens: Sequence[Token]) -> Iterator[list[Token]]:
     """Yield the tokens of each equation; semicolons, commas and most line breaks end one.
 
-    A line that starts or ends with an operator, or has no relation sign, is joined to another line.
+    A line that starts or ends with an operator, or has no relation sign, is joined to another line. A line that starts
+    with a minus is an equation of its own if it has a relation sign.
     """
     line: list[Token] = []
     depth = 0

@@ -208,6 +208,8 @@ class PiecesPart(OpenFunctionsPart):
 
     def fraction(self, token: Token) -> Node:
         self.plain = True
+        if re.search("/0+$", token.text):
+            raise self.fail("a divisor that is not zero", token.start)
         value = Fraction(token.text)
         return replace(quotient(*map(number, value.as_integer_ratio())), span=self.span(token.start))
 
@@ -374,7 +376,12 @@ class PiecesPart(OpenFunctionsPart):
         """Parse the limits of an integral after its sign, as in ``∫_0^1`` or ``∫₀¹``, and return them."""
         lower = self.limit()
         if self.token().kind == "power":
-            return lower, number(int(self.next().text))
+            upper = self.next()
+            if upper.text == "T":  # ∫₀ᵀ
+                return lower, Node("name", "T", (), (upper.start, upper.end))
+            if not re.fullmatch(r"[+-]?\d+", upper.text, re.ASCII):
+                raise self.fail("a whole number or T as a raised limit", upper.start)
+            return lower, number(int(upper.text))
         self.expect("^")
         return lower, self.limit()
 

@@ -103,7 +103,7 @@ def each_reading(read: Callable[[Collection[tuple[str, int]]], Reading]) -> Iter
 
     ``flips`` are the keys (kind of ambiguity, position) of the ambiguous pieces that get their less usual meaning: all
     pieces of one kind or, for kinds other than "word" and "name", a single piece. Readings for which ``read(flips)``
-    raises InputError are left out.
+    raises InputError are left out; for the usual reading, the error passes through.
     """
     usual = read(())
     yield usual

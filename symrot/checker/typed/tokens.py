@@ -118,7 +118,8 @@ def tokens_of(source: str, where: str = "") -> Iterator[Token]:
     Raises
     ------
     InputError
-        For a character that means nothing in a formula; the message may suggest another one.
+        For a character that means nothing in a formula, with what to write instead if that is known; for a number of
+        more than LONGEST_NUMBER characters.
     """
     text, places = _accents_after_letters(*_written_out(source.rstrip()))
     places.append(len(source.rstrip()))

@@ -100,7 +100,7 @@ def marked(tokens: Sequence[Token]) -> Iterator[str]:
 def dotted(tokens: Sequence[Token], vectors: Collection[str]) -> set[str]:
     """Return further names of vectors, found in scalar products: v in ``n·v`` if n is in ``vectors``; c in ``(a×b)·c``.
 
-    Only letters that books usually give to vectors, and g, are returned.
+    Only letters that books usually give to vectors, and g, are returned, but none in ``SHARED``.
     """
     names: set[str] = set()
     for place, dot in enumerate(tokens):

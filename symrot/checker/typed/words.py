@@ -190,7 +190,6 @@ def shorthands_of_letters(tokens: Sequence[Token]) -> list[Shorthand]:
     places = [place for place, token in enumerate(tokens) if token.kind == "name" and OF_LETTERS.fullmatch(token.text)]
     forms = {tokens[place].text for place in places}
     angles = {form[1] for form in forms if {f"c{form[1]}", f"s{form[1]}"} <= forms}
-    # without cosine and sine of two angles, ca is probably c times a
     if len(angles) < FEWEST_OF_LETTERS:
         return []
     functions = {"c": "cos", "s": "sin"}

@@ -144,7 +144,7 @@ class UnitProduct:
         return f"1 {self.text} = {factor}{f'/{below}' if below != 1 else ''} {unit}".rstrip()
 
     def _is_angle(self) -> bool:
-        """Return whether the product starts with a unit of angle, to the power 1, and has no other: deg, deg/s, rpm."""
+        """Return whether the first unit, to the power 1, and no further unit has an angle in it: deg, deg/s, rpm."""
         first, *others = _PIECE.finditer(self.text)
         angular = [ALIASES.get(piece["unit"], piece["unit"]) in ANGULAR for piece in (first, *others)]
         return angular[0] and not first["power"] and not any(angular[1:])
@@ -185,7 +185,8 @@ def measured_text(source: str) -> Measured | None:
     """Return a text with a name such as unit_1 in place of each unit or product of units.
 
     Return None if the text has no units, if it has names besides units (one name as the left side is allowed), or if
-    its one-letter units are probably quantities, as m and g in ``T = 2 m g``.
+    its one-letter units are probably quantities, as m and g in ``T = 2 m g``. Return None also for a formula whose only
+    units are degrees inside it, and for LaTeX commands that plain signs cannot replace.
 
     Raises
     ------

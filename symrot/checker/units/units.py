@@ -108,6 +108,8 @@ def read_unit(text: str, where: str = "") -> Dimension:
         if match is None or name not in _KNOWN or (not position and match["divide"]):
             reason = "nothing before the slash" if name in _KNOWN else f"{name!r}, which is not a known unit"
             raise InputError(f"{place}expected a unit like kg m^2/s, N m or 1/s, got {text[:40]!r} with {reason}")
+        if re.search("/0+$", match["power"] or ""):
+            raise InputError(f"{place}expected a unit like m^(1/2), got {text[:40]!r} with a divisor 0 in a power")
         power = Fraction(match["power"] or 1)
         dimension = times(dimension, raised(_KNOWN[name], -power if match["divide"] == "/" else power))
         position = match.end()

@@ -24,7 +24,7 @@ Pair = tuple[Any, Any]
 """A number high + low; each part is an array or a float."""
 
 NEAR = 1 / 16
-"""Largest argument for which the series of :func:`second` is accurate."""
+"""Largest absolute value of the argument for which the series of :func:`second` is accurate."""
 
 _SPLITTER = 134217729.0  # 2^27 + 1: multiplication by it splits a double into two halves
 _PARTS = 8  # parts of an octave (a factor of 2) in the table of the exponential
@@ -41,7 +41,10 @@ def two_sum(a: Any, b: Any) -> Pair:
 
 
 def two_product(a: Any, b: Any) -> Pair:
-    """Return ``a * b`` rounded to a double, and its rounding error; their sum is exactly a b (Dekker)."""
+    """Return ``a * b`` rounded to a double, and its rounding error; their sum is exactly a b (Dekker).
+
+    The error is not exact for results below about 1e-292; for factors above about 1e300, it is NaN.
+    """
     product = a * b
     wide_a, wide_b = _SPLITTER * np.asarray(a), _SPLITTER * np.asarray(b)
     high_a, high_b = wide_a - (wide_a - a), wide_b - (wide_b - b)
@@ -50,19 +53,22 @@ def two_product(a: Any, b: Any) -> Pair:
 
 
 def normalized(high: Any, low: Any) -> Pair:
-    """Return two doubles with the sum ``high + low``, of which the first is that sum rounded to a double."""
+    """Return two doubles with the sum ``high + low``, of which the first is that sum rounded to a double.
+
+    ``low`` must not be larger than ``high`` in absolute value.
+    """
     total = high + low
     return total, low - (total - high)
 
 
 def add(a: Pair, b: Pair) -> Pair:
-    """Return the sum a + b of double-double numbers, with an error of 2^-104 times the larger of |a| and |b|."""
+    """Return the sum a + b of double-double numbers, with an error of about 2^-104 times the larger of |a|, |b|."""
     total, error = two_sum(a[0], b[0])
     return normalized(total, error + (a[1] + b[1]))
 
 
 def subtract(a: Pair, b: Pair) -> Pair:
-    """Return the difference a - b of double-double numbers, with an error of 2^-104 times the larger of |a| and |b|."""
+    """Return the difference a - b of double-double numbers; the error is about 2^-104 times the larger of |a|, |b|."""
     return add(a, (-b[0], -b[1]))
 
 

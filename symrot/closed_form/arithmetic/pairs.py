@@ -117,8 +117,8 @@ def numbers(what: str, values: Sequence[Number], length: int, least: float = -LA
     Raises
     ------
     InputError
-        If there are not ``length`` values, or if one is not a real number, exceeds :data:`LARGEST`, or is below
-        ``least``.
+        If there are not ``length`` values, or if one is not a real number, exceeds :data:`LARGEST` in absolute value,
+        or is below ``least``.
     """
     entries = _listed(what, values, length)
     if (

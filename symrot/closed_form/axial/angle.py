@@ -73,6 +73,11 @@ class Turning:
         Angular acceleration that the constant torque causes, rad/s^2.
     decay : Fraction
         Decay rate that the damping causes, 1/s.
+
+    Raises
+    ------
+    InputError
+        If constants of the motion exceed the range of doubles.
     """
 
     def __init__(self, factor: Fraction, rate: Fraction, push: Fraction, decay: Fraction) -> None:
@@ -93,7 +98,10 @@ class Turning:
 
     @np.errstate(over="ignore")  # only upper bounds overflow; such angles are computed in integers
     def __call__(self, t: Floats) -> Floats:
-        """Return ``factor`` times the angle of rotation at each time in ``t``, s, in revolutions from -1/2 to 1/2."""
+        """Return ``factor`` times the angle of rotation at each time in ``t``, s, in revolutions from -1/2 to 1/2.
+
+        Raise InputError if the angular velocity at a time exceeds the range of doubles.
+        """
         if len(t) > _BLOCK:
             return np.concatenate([self(t[k : k + _BLOCK]) for k in range(0, len(t), _BLOCK)])
         # doubles have a relative error of 1e-16, double-double numbers an error of 1e-20 revolutions; integers serve

@@ -149,7 +149,6 @@ class Constants:
             return [top / bottom, self._pushed, 0.0, top / bottom, *evenly, 0.0, 0.0, 0.0, *fixed]
         gain, over = self._push * bottom - self._decay * top, self._shared * bottom
         rest, below = gain * self._shared * turn, self._decay * self._decay * bottom << bits
-        # initial rate and acceleration, final rate, transient part of the rate, then the constants of the angle
         beyond = -rest % below
         return [
             top / bottom, _nearest(gain, over), self._final,
@@ -165,13 +164,11 @@ class Constants:
         If the body rotates by 1 rad about the driven axis, the angle changes by ``turn/2**bits`` revolutions. ``fixed``
         are the numbers for C that do not depend on the initial state: 3, or 8 without damping.
         """
-        # the angle is lag if transverse, otherwise half the angle of rotation
         turn, bits = _HALF
         if transverse:
             (a, over_a), (c, over_c) = self._moments
             lag = Fraction(c * over_a - a * over_c, over_c * a)
             turn, bits = _turns_of(lag.numerator, lag.denominator)
-        # fixed: the numbers of the C struct `turning` that do not depend on the initial state
         if self._decay:
             fixed = parts(self._sign * self._push * turn, abs(self._decay) << bits, _WIDE)
         else:
@@ -201,7 +198,7 @@ class Constants:
         return Loops(evaluate, constants, ctypes.addressof(constants))
 
     def omega_rows(self, one: Any, other: Any) -> list[Any]:
-        """Return the 3x3 matrix, as a list of rows, that gives the angular velocity in the body at any time.
+        """Return the 3x3 matrix that gives the angular velocity in the body at any time, as 9 entries row by row.
 
         The matrix is to be multiplied by the vector (d cos(lag), d sin(lag), rate about the driven axis): lag is the
         angle by which the transverse angular velocity has rotated in the body, and d is the factor by which damping has

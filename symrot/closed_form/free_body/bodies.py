@@ -51,9 +51,10 @@ def _functions() -> tuple[Any, Any, Any]:
 
 
 def fixed_body(moments: Sequence[Fraction], axes: Sequence[Fraction]) -> NDArray[np.uint64]:
-    """Return the principal moments and the principal axes of one body as integers for C, in units of 2^-248.
+    """Return the principal moments and axes of one body as integers for C, in units of 2^-248.
 
-    The moments are first divided by the power of two that makes the largest one at least 1/2 and below 1.
+    Each of the 12 integers is four 64-bit words, the lowest first; the result has shape (48,). The moments are first
+    divided by the power of two that makes the largest one at least 1/2 and below 1.
     """
     largest = max(moments)
     length = largest.numerator.bit_length() - largest.denominator.bit_length()  # the power of two, or one more

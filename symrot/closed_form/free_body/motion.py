@@ -94,7 +94,10 @@ class FreeRigidBody:
         return fixed_body(self._principal.moments, [x for row in self._principal.axes for x in row])
 
     def along(self, omega0: Sequence[Number]) -> tuple[list[int], int]:
-        """Return an angular velocity along the principal axes as three integers and their common denominator."""
+        """Return an angular velocity along the principal axes as three integers and their common denominator.
+
+        Components that are negligible relative to the largest one are zero.
+        """
         rates, shared = over_common_denominator(omega0)
         x, y, z = rates
         largest = max(abs(x), abs(y), abs(z))
@@ -135,7 +138,10 @@ def _differences(moments: Sequence[Number], omega: Sequence[Number]) -> list[flo
 
 
 def gaps(i: list[int], shared: int) -> list[float]:
-    """Return I2 - I3, I3 - I1, I1 - I2 of the principal moments ``i[k]/shared`` as one list hi, lo, hi, lo, .."""
+    """Return I2 - I3, I3 - I1, I1 - I2 of the principal moments ``i[k]/shared`` as one list hi, lo, hi, lo, ..
+
+    Differences that are negligible relative to the moments are zero.
+    """
     differences: list[float] = []
     for k in range(3):
         difference = i[(k + 1) % 3] - i[(k + 2) % 3]

@@ -292,7 +292,10 @@ class PortableHeavyTop:
 
 
 def _roots(pull: Any, twice: Any, d: Any, spin: Any) -> list[Any]:
-    """Return the roots S1 >= S2 >= S3 of the cubic ``(twice + 2 pull s) s (2 - s) - (d + spin s)^2`` in s."""
+    """Return the roots S1 >= S2 >= S3 of the cubic ``(twice + 2 pull s) s (2 - s) - (d + spin s)^2`` in s.
+
+    Rounding errors are removed: S1 is at most 2, S2 at least 0, S3 at most 0, and nearly equal roots are equal.
+    """
     # it is (ds/dt)^2 of a heavy top with transverse moment 1, for s = 1 - cos theta. M = pull: weight times distance of
     # the centre of mass; 2 (E - M) = twice: E is the energy without that of the spin; l = spin: the angular momentum
     # along the axis; D = d: L_z - l
@@ -302,7 +305,6 @@ def _roots(pull: Any, twice: Any, d: Any, spin: Any) -> list[Any]:
     s1, s2, s3 = roots
     s3, s2, s1 = min(s3, mpf(0)), max(s2, mpf(0)), min(s1, mpf(2))
     size = max(abs(x) for x in roots)
-    # nearly equal roots are made equal
     if s1 - s2 < EQUAL * size:
         s2 = s1
     if s2 - s3 < EQUAL * size:

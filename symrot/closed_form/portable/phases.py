@@ -61,13 +61,13 @@ class Phase(NamedTuple):
     def rest(self, t: Floats, parts: int, more: Floats | float = 0.0) -> tuple[Floats, Floats]:
         """Return the phase plus ``more``, in revolutions modulo 1/``parts``, and the number of parts removed.
 
-        If ``parts`` is 4, a phase of 0.3 gives 0.05 and 1. Beyond MOST_REVOLUTIONS it gives NaN and 0.
+        That number is correct modulo ``parts``. If ``parts`` is 4, a phase of 0.3 gives 0.05 and 1; a phase beyond
+        MOST_REVOLUTIONS gives NaN and 0.
         """
         product, error = two_product(t, self.rate[0])
         small = error + t * self.rate[1]
         small = (small - np.rint(small)) + self.start[1] + more
         high, low = two_sum(product - np.rint(product), self.start[0])
-        # correct modulo parts, that is, up to whole revolutions
         steps = np.rint(parts * (high + small))
         rest = (high - steps / parts) + (low + small)
         known = np.abs(product) <= MOST_REVOLUTIONS

@@ -40,7 +40,10 @@ _LARGEST = Fraction(10) ** 300
 
 
 def _scale(*values: Fraction) -> Fraction:
-    """Return a power of two between half and twice the largest absolute value of ``values``."""
+    """Return a power of two between half and twice the largest absolute value of ``values``.
+
+    It is at least 2^-900 and at most 2^900.
+    """
     # the unit of angular velocities, so that scaled numbers are near 1
     largest = max(map(abs, values))
     size = largest.numerator.bit_length() - largest.denominator.bit_length()

@@ -27,7 +27,7 @@ PIECES = 4
 DEGREE = 19
 """Degree of the Taylor polynomials of the attitude near resonance, in the scaled time x.
 
-On an interval of half width 1/8, the next term is below (r/2)^20/20!/8^20 < 1e-20, where r < 13.5 is the speed.
+On an interval of half width 1/8, the next term is near (r/2)^20/20!/8^20 < 2e-20, where r < 13.5 is the speed.
 """
 
 _TERMS = 34  # terms of a series in integers
@@ -85,7 +85,7 @@ class Near:
         return total[0], total[1], total[2], total[3]
 
     def quaternion(self, x: Fraction) -> Quaternion:
-        """Return the attitude at the scaled time x, relative to resonance (x = 0), with an error of 1e-30.
+        """Return the attitude at the scaled time x, relative to resonance (x = 0), with an error below 1e-30.
 
         The components of the quaternion are integers in units of 2^-FIXED.
         """

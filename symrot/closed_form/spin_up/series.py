@@ -52,10 +52,10 @@ class Series(NamedTuple):
 
     The body rotates about a vector n, fixed in space and near the direction of the angular velocity (kappa, 0, x).
     ``g`` and ``c`` give the components of n normal to the angular velocity; ``e`` gives delta, the angle of rotation
-    minus the integral of r = sqrt(kappa^2 + x^2). y is radius2/r^2; radius2 is the smallest r^2 for which they hold.
+    minus the integral of r = sqrt(kappa^2 + x^2). y is radius2/r^2; the polynomials hold if r^2 is at least radius2.
     """
 
-    # whether kappa is above WIDE: the series are then accurate at every x, otherwise for x above NEAR
+    # whether kappa is at least WIDE: the series are then accurate at every x, otherwise for x from NEAR on
     wide: bool
     # perpendicular to the angular velocity, n has the components (kappa/r) (x/r) v^2 g and (kappa/r) v c
     g: Floats  # times v^2 at y = 1

@@ -83,13 +83,13 @@ class Share:
     def _is_preferred(self, pair: Any) -> bool:
         """Return whether ``pair`` becomes a shared node before other pairs that are equally frequent.
 
-        True for a sum, and for a product or quotient without numbers. A product is ``("mul", (a, b), ())``, a quotient
-        ``("mul", (a,), (b,))``, where a and b are indices of nodes.
+        True for a sum, and for a product, quotient or reciprocal without numbers. With indices a and b of nodes, these
+        are ``("mul", (a, b), ())``, ``("mul", (a,), (b,))`` and ``("mul", (), (b,))``.
         """
         return pair[0] == "add" or not any(self.nodes[i][0] == "num" for part in pair[1:] for i in part)
 
     def _replace(self, kind: str, pair: tuple[Any, ...], swap: Callable[..., tuple[Any, ...]]) -> None:
-        """Add ``pair``, a product or sum of two nodes, as a node, and use that node wherever the pair occurs."""
+        """Add ``pair``, such as a*b, a/b, 1/b or a + b, as a node, and use this node wherever the pair occurs."""
         if pair not in self.nodes:
             self.nodes.append(pair)
         new = self.nodes.index(pair)

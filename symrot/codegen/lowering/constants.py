@@ -104,10 +104,12 @@ class Gather:
         return tree if sign > 0 else ("add", ((-1, tree),))
 
     def _distributed(self, ordered: Sequence[Expr]) -> list[Expr]:
-        """Return the terms of a constant times a sum, multiplied out; for any other product, an empty list."""
+        """Return the terms of a constant times a sum, multiplied out.
+
+        The list is empty for any other product, and for a sum such as ``1 + tanh(u)`` that may tend to zero.
+        """
         sums = [argument for argument in ordered if self.is_variable(argument)]
-        # a sum that may tend to zero, such as 1 + tanh(u), stays: a rounding error proportional to the constant would
-        # remain
+        # multiplied out, a sum that tends to zero would keep a rounding error proportional to the constant
         if len(sums) != 1 or not sums[0].is_Add or sums[0].atoms(*LEVELLING):
             return []
         # c*(a + b*x) becomes c*a + (c*b)*x, which has one operation less
@@ -213,7 +215,6 @@ def _signed_sum(terms: Sequence[tuple[int, Tree]]) -> tuple[int, Tree]:
     """Return the sum of ``terms`` as (sign, tree) with few minus signs: ``-a - b`` gives -1 and ``a + b``."""
     if len(terms) == 1:
         return terms[0]
-    sign = 1 if any(s > 0 for s, _ in terms) else -1
-    if sum(s for s, _ in terms) < 0 or (sum(s for s, _ in terms) == 0 and terms[0][0] < 0):
-        sign = -1
+    surplus = sum(s for s, _ in terms)
+    sign = -1 if surplus < 0 or (surplus == 0 and terms[0][0] < 0) else 1
     return sign, ("add", tuple((s * sign, tree) for s, tree in terms))

@@ -123,7 +123,8 @@ def lower(
     ----------
     signature : Signature
         Name and arguments of the program. The components of the input arguments are the variables; every other symbol
-        is a physical constant. The signature must not contain the parameter argument, which this function adds.
+        is a physical constant or one of ``definitions``. The signature must not contain the parameter argument, which
+        this function adds.
     outputs : sequence of (component name, Expr)
         Component names and expressions, in the order of the output arguments.
     definitions : sequence of (Symbol, Expr)
@@ -140,7 +141,7 @@ def lower(
     Raises
     ------
     InputError
-        If an expression contains a function or a power that kernels do not support.
+        If an expression contains a float, or a function or a power that kernels do not support.
     """
     ways = [_lowered(signature, outputs, definitions, parameter_argument, flat) for flat in (False, True)]
     lowered, anonymous = min(ways, key=lambda way: way[0].program.operations().total())

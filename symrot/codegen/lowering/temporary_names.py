@@ -44,12 +44,12 @@ class _Product:
     def name(self) -> str | None:
         """Return the name of this product: ``two_q1_q2`` for ``2*q1*q2``, ``inv_sin_theta`` for ``1/sin_theta``.
 
-        The result is None for a mere number, and for a coefficient without a word in ``WORDS``, such as 7.
+        ``a/7`` is ``a_over_7``. The result is None for a mere number, for ``1/(7*a)``, and for any other coefficient
+        without a word in ``WORDS``, such as 7.
         """
         size = abs(self.coefficient)
         divisor = [str(size.denominator)] if size.numerator == 1 and size not in WORDS else []
         word = "" if divisor else WORDS.get(size)
-        # a mere number, or a coefficient such as 7 without a word in WORDS
         if word is None or (not any(power > 0 for _, power in self.powers) and (divisor or not self.powers)):
             return None
         over = [f"{symbol}{POWERS.get(power, f'_pow_{power}')}" for symbol, power in self.powers if power > 0]

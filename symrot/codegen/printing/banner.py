@@ -14,7 +14,7 @@ __all__ = ["CONTRACT", "Description", "banner", "cost"]
 WIDTH = 110
 LONGEST = 116  # largest length of a domain that is printed in one line
 WIDEST = 56  # largest width of an aligned column; a longer entry shifts the rest of its row
-NAMES = {"add": "add", "mul": "mul", "div": "div", "neg": "neg"}
+ARITHMETIC = ("mul", "add", "neg", "div")  # operations that the line of costs lists before all functions
 
 CONTRACT = (  # lines in the head of a C file: place of the certificate, its assumptions, compiler flags
     ("Certificate", "{kernel}.cert.json; re-check it by `python recheck.py {kernel}.cert.json` or `symrot audit`"),
@@ -34,7 +34,7 @@ class Description:
     derivation: str  # the page that derives it
     command: str  # the command that prints the file
     convention: str = "body axes; quaternion scalar first, Hamilton, body to space (symrot conventions)"
-    contract: tuple[tuple[str, str], ...] = ()  # further lines (heading, text); {kernel} is its name
+    contract: tuple[tuple[str, str], ...] = ()  # further lines (heading, text); {kernel} stands for the kernel's name
 
 
 def _domain(domain: str) -> list[str]:
@@ -54,7 +54,7 @@ def _harmless(text: str) -> str:
 def cost(program: Program) -> str:
     """Return the numbers of operations of a program as a text, e.g. ``5 mul, 3 add, 1 div, 2 sin, 2 cos``."""
     counts = program.operations()
-    order = ["mul", "add", "neg", "div", *sorted(set(counts) - set(NAMES))]
+    order = [*ARITHMETIC, *sorted(set(counts) - set(ARITHMETIC))]
     return ", ".join(f"{counts[name]} {name}" for name in order if counts[name]) or "none"
 
 

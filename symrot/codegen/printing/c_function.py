@@ -119,7 +119,7 @@ def names_used(program: Program) -> set[str]:
 
 
 def statement(head: str, formula: str, indent: str, mark: str = "=") -> list[str]:
-    """Return the lines of the C statement ``head = formula;``, broken after operators if one line is too long.
+    """Return the lines of the C statement ``head = formula;``, broken at blanks if one line is too long.
 
     ``mark`` is written in place of ``=``, such as ``+=``.
     """
@@ -138,7 +138,7 @@ def function_body(
     program: Program, index_of: Callable[[int], str], indent: str, real: Real, near: bool = False,
     late: Sequence[Argument] = (),
 ) -> list[str]:  # fmt: skip
-    """Return the C statements of a program; a value is computed just before the first output that needs it.
+    """Return the C statements of a program; a value is computed just before the first output argument that needs it.
 
     Parameters
     ----------
@@ -205,7 +205,7 @@ def _due(needed: set[str], waiting: dict[str, tuple[set[str], list[str]]]) -> li
 
 
 def silenced(program: Program, indent: str) -> list[str]:
-    """Return a statement ``(void)name;`` for each argument that the formulas do not use, to avoid compiler warnings."""
+    """Return a statement ``(void)name;`` for each input that the formulas do not use, to avoid compiler warnings."""
     used = names_used(program)
     idle = [
         argument.name

@@ -47,7 +47,7 @@ def turning_arguments(program: Program) -> list[Node]:
 
 
 def has_branch_free_calls(program: Program) -> bool:
-    """Return whether a program calls a function, such as sin, that ``symrot_math.h`` has without branches."""
+    """Return whether a program calls a function, such as sin or sinc, that a batch can compute without branches."""
     return any(name in ("sin", "cos", "atan2", "select_ge", *NEAR) for name, _ in _calls(program))
 
 

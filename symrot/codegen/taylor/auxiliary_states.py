@@ -166,8 +166,8 @@ class _Closure:
     def of_attitude(self, form: Polynomial | None) -> bool:
         """Return whether a polynomial depends on the attitude alone, so that auxiliary states can replace it.
 
-        It may contain q0..q3, in degree 2 or more, constants and functions of time, but no other state. The result is
-        False for None.
+        It must have a term of degree 2 or more in q0..q3. It may contain constants and functions of time, but no other
+        state. The result is False for None.
         """
         if form is None:
             return False

@@ -43,11 +43,6 @@ def coefficients(
         Values of states, parameters and t, by name, at the centre of the expansion.
     functions, number
         As for :func:`symrot.formula.tree.evaluate`.
-
-    Examples
-    --------
-    With Fractions the coefficients are exact; tests prove the rules with them
-    (``tests/codegen/test_recurrences.py``).
     """
     run = _Run(
         lambda node: evaluate(node, values, functions, number), functions or {}, [[] for _ in system.series],

@@ -84,7 +84,7 @@ def lane_definitions(program: Program, edges: Sequence[int], scales: Sequence[fl
 
 
 def multiplications(program: Program, order: int) -> int:
-    """Return the number of multiplications in the convolutions of one Taylor step of one trajectory."""
+    """Return about the number of multiplications in the convolutions of one Taylor step of one trajectory."""
     # a measure of the time of a step
     jet = _Jet(recurrences(program))
     shares = [(0.5 if slot.square else 1.0) * len(slot.terms) for slot in jet.slots]
@@ -152,7 +152,7 @@ class _Jet:
         return f"x[{self.state[series]}][{n}]" if series in self.state else f"u{series}[{n}]"
 
     def weight(self, node: Node) -> str:
-        """Return the C expression of a positive constant: a literal, or ``c[k]`` for a formula of parameters."""
+        """Return the C expression of a constant without a minus sign in front: a literal, or ``c[k]`` for a formula."""
         if not names(node) and node[0] == "number":
             return f"V_ALL({c_expression(node)})"
         return f"c[{self.constants.setdefault(node, len(self.constants))}]"

@@ -35,7 +35,7 @@ def value_of(form: Linear) -> Node:
 
 
 def folded(node: Node) -> Node:
-    """Return a shorter constant formula of equal value: ``2*3`` gives 6, ``1*a`` gives a, ``a*(-b)`` gives -(a*b)."""
+    """Return a constant formula, shortened if possible: ``2*3`` gives 6, ``1*a`` gives a, ``a*(-b)`` gives -(a*b)."""
     kind, parts = node[0], children(node)
     if kind == "neg":
         sign, inner = split_sign(parts[0])
@@ -93,7 +93,7 @@ def scaled(form: Linear, factor: Node | int) -> Linear:
 
 
 def total(left: Linear, right: Linear, sign: int) -> Linear:
-    """Return ``left + sign*right``, where ``sign`` is 1 or -1; terms that cancel are left out."""
+    """Return ``left + sign*right``, where ``sign`` is 1 or -1; terms whose weights add up to a 0 are left out."""
     right = right if sign > 0 else scaled(right, -1)
     constant = left.constant if right.constant is None else right.constant
     if left.constant is not None and right.constant is not None:
@@ -102,7 +102,7 @@ def total(left: Linear, right: Linear, sign: int) -> Linear:
     for series, weight in right.terms.items():
         both = folded(("+", terms[series], weight)) if series in terms else weight
         if both == ZERO:
-            del terms[series]
+            terms.pop(series, None)
         else:
             terms[series] = both
     return Linear(None if terms and constant == ZERO else constant, terms)

@@ -24,9 +24,12 @@ HIGHEST = 12  # largest degree of a polynomial of t that is shifted as a whole
 
 
 def from_epoch(kernel: SceneKernel) -> SceneKernel:
-    """Return the kernel of a scene in whose rates the time t is counted from the new constant ``epoch``, s."""
+    """Return the kernel of a scene in whose rates the time t is counted from the new constant ``epoch``, s.
+
+    Conserved quantities whose formulas contain t are marked as not conserved.
+    """
     rates, parameters = moved(kernel.rates, kernel.rate_parameters)
-    # formulas of conserved quantities still contain the original time
+    # their formulas would still contain the original time
     timeless = [
         item._replace(holds=item.holds and not kernel.quantities.uses(TIME, (item.output,)))
         for item in kernel.conserved

@@ -27,7 +27,8 @@ class LinearForm:
     """
 
     terms: tuple[tuple[Expr, Fraction], ...]  # pairs (atom, coefficient); no atom is rational
-    # a multiple of 1/24; a constant angle with another denominator is a term with the atom ``pi``
+    # a multiple of 1/24, from 0 to below 2 (full turns are left out); a constant angle with another denominator is a
+    # term with the atom ``pi``
     half_turns: Fraction
 
 

@@ -14,9 +14,9 @@ __all__ = [
     "LARGEST_DEGREE",
     "degree",
     "doubled_cosine",
+    "has_affordable_degree",
     "minimal_polynomial",
     "multiples",
-    "needs_cyclotomic_field",
     "order",
 ]
 
@@ -39,7 +39,7 @@ def order(denominator: int) -> int:
     return denominator if denominator % 2 == 0 else 2 * denominator
 
 
-def needs_cyclotomic_field(denominator: int) -> bool:
+def has_affordable_degree(denominator: int) -> bool:
     """Return whether the degree of 2 cos(pi/N) is small enough to express cosines of multiples of pi/denominator by it.
 
     N is ``order(denominator)``.

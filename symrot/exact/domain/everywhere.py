@@ -29,7 +29,7 @@ Range = tuple[Bound, Bound]
 
 REALS: Range = (-inf, inf)
 MOST_BITS = 2000
-"""Largest size of a bound, in bits; a larger one is replaced by an infinite bound."""
+"""Largest size of a bound, in bits; with a larger one, both bounds of a formula are replaced by infinite bounds."""
 
 
 def fails_everywhere(need: Need) -> bool:

@@ -123,13 +123,13 @@ class _Search:
         return value >= -TOLERANCE if need.sign == ">= 0" else value > 0 if need.sign == "> 0" else value != 0
 
     def moved(self, point: Point) -> Point:
-        """Return a point at which fewer conditions are violated, in double precision, or the same point."""
+        """Return a point at which the conditions are violated less, in double precision, or the same point."""
         # only a candidate: the caller proves that it obeys the conditions
         point = self.jumped(point)
         return self.climbed(point) if self.broken(point) else point
 
     def climbed(self, point: Point) -> Point:
-        """Return a point at which the conditions are violated less, by steps in one value at a time."""
+        """Return a point at which the conditions are violated less, or the same point; steps change one value each."""
         size, depth = Fraction(1), self.depth(point)
         while depth < 0 and size > SMALLEST_STEP and self.looks < MOST_LOOKS:
             trials = ({**point, leaf: point[leaf] + sign * size}
@@ -157,7 +157,10 @@ class _Search:
         return total
 
     def jumped(self, point: Point) -> Point:
-        """Return a point at which fewer conditions are violated: symbols get other simple values, one at a time."""
+        """Return a point at which fewer conditions are violated, or the same point.
+
+        Symbols get other simple values, one at a time.
+        """
         broken = self.broken(point)
         while broken and self.looks < MOST_LOOKS:
             trials = (

@@ -139,7 +139,10 @@ def _sum(product: Product, signs: Mapping[Expr, int]) -> Expr:
 
 
 def _of_number(number: Rational) -> Expr:
-    """Return the logarithm of a positive rational number as a sum of logarithms of primes."""
+    """Return the logarithm of a positive rational number as a sum of logarithms of primes.
+
+    A numerator or denominator of more than MOST_BITS_FACTORED bits is not factored.
+    """
     terms = []
     for whole, sign in ((int(number.p), 1), (int(number.q), -1)):
         primes = factorint(whole) if whole.bit_length() <= MOST_BITS_FACTORED else {whole: 1}

@@ -49,7 +49,10 @@ def take_squares(above: PolyElement, below: PolyElement, generators: Sequence[Ex
 
 
 def _square_part(poly: PolyElement) -> tuple[PolyElement, list[tuple[PolyElement, int]]]:
-    """Return (P, [(f, n), ..]) with ``poly = P * product(f^(2n))``, P square-free and each f irreducible."""
+    """Return (P, [(f, n), ..]) with ``poly = P * product(f^(2n))``, P square-free and each f irreducible.
+
+    A polynomial of more than MOST_TERMS terms is returned whole.
+    """
     if poly.is_ground or len(poly) > MOST_TERMS or all(degree < 2 for degree in poly.degrees()):
         return poly, []
     rest, squares = poly, []

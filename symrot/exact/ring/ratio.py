@@ -28,7 +28,7 @@ and courses that symrot checks need at most 27 000."""
 
 
 class TooLarge(InputError):
-    """The exception for a formula whose expansion takes more products of terms than the budget allows."""
+    """The exception for a formula whose expansion exceeds a limit, such as the largest number of products of terms."""
 
 
 @dataclass(frozen=True)

@@ -92,7 +92,8 @@ class FormulaRing:
         If an expression contains a floating point number, an infinity, or a term that is not a scalar formula, if a
         divisor is zero everywhere, or if the hypotheses contradict each other.
     TooLarge
-        If the budget of the current decision is exhausted (:mod:`symrot.exact.limits.budget`).
+        If the budget of the current decision is exhausted (:mod:`symrot.exact.limits.budget`), or if the relations are
+        too large to expand.
     """
 
     def __init__(
@@ -248,7 +249,7 @@ class FormulaRing:
         The sines and cosines of all constant angles, such as 3 pi/7, are polynomials in 2 cos(pi/14), with N = 14.
         """
         # no such number for multiples of pi/24, which have square roots as sines and cosines, or if N is too large
-        if pi not in self.bases or not cyclotomic.needs_cyclotomic_field(self.bases[pi].denominator):
+        if pi not in self.bases or not cyclotomic.has_affordable_degree(self.bases[pi].denominator):
             return 0
         # pi then needs no sine and cosine of its own
         return cyclotomic.order(self.bases.pop(pi).denominator)
@@ -323,7 +324,7 @@ class FormulaRing:
         return {} if simple or len(known) < 2 or I in self.generators else known
 
     def reduce(self, poly: PolyElement) -> PolyElement:
-        """Return a polynomial reduced by the relations; 0 if it follows from them that the polynomial is zero.
+        """Return the normal form of a polynomial modulo the relations, which is 0 for a sum of multiples of relations.
 
         Terms whose algebraic number is zero are also removed, such as ``sqrt(2)*sqrt(3) - sqrt(6)``.
         """

@@ -119,10 +119,11 @@ class ParquetStore:
         if not path.exists():
             return None
         rows = self._parquet.read_table(path, filters=[("name", "=", name)])
-        counts = [rows[key].to_numpy() for key in ("index", "t")]
         if not len(rows):
             return None
-        shape = [len(np.unique(column)) for column in counts if not np.isnan(column.astype(float)).all()]
+        index, times = (rows[key].to_numpy().astype(float) for key in ("index", "t"))
+        # sample times may be equal, so that their number is not that of the different values
+        shape = ([] if np.isnan(index).all() else [len(np.unique(index))]) + [-1] * (not np.isnan(times).all())
         return np.asarray(rows["value"].to_numpy().reshape(shape))
 
     def has(self, name: str) -> bool:

@@ -86,7 +86,7 @@ def audit_step(
     if not re.fullmatch(r"[A-Za-z]\w*", name, re.ASCII) or path.name != f"{name}.cert.json":
         raise CertificateError(f"{path}: expected the certificate of {path.name.removesuffix('.cert.json')}, "
                                f"got that of {name[:60]}")  # fmt: skip
-    if data["seal"] != seal(data) or path.read_text(encoding="utf-8") != certificate_json(data):
+    if data["seal"] != seal(data) or path.read_text("utf-8", "replace") != certificate_json(data):
         raise CertificateError(f"{path}: expected a certificate as symrot prints it, got one that was edited")
     method = _method(path, data)
     if data["trusted"] != trusted(method.name, "bounds" in data):
@@ -166,13 +166,15 @@ def _method(path: Path, data: Data) -> Method:
             raise CertificateError(f"{path}: expected the method {exact.formula!r}, got {data['method']!r}")
         return exact
     try:
-        jacobian = tuple(step.get("jacobian", ()))
-        method = step_method(step["method"], step["order"] if step["method"] == "taylor" else None, jacobian)
-    except (InputError, KeyError, TypeError) as reason:
+        jacobian, order = tuple(step.get("jacobian", ())), step["order"]
+        if not all(isinstance(name, str) for name in jacobian):
+            raise TypeError("'jacobian' is no list of names")
+        method = step_method(step["method"], order if step["method"] == "taylor" else None, jacobian)
+    except (InputError, KeyError, TypeError, AttributeError) as reason:
         raise CertificateError(f"{path}: expected a method that symrot knows: {reason}") from None
     assert not isinstance(method, SteadyRotations)
-    if step["order"] != method.order or data["method"] != method.formula:
-        raise CertificateError(f"{path}: expected the order {method.order} of {method.name}, got {step['order']}")
+    if order != method.order or data["method"] != method.formula:
+        raise CertificateError(f"{path}: expected the order {method.order} of {method.name}, got {order}")
     return method
 
 

@@ -8,11 +8,17 @@ from symrot.errors import InputError
 
 @pytest.mark.parametrize(("text", "verdict"), [
     ("∫_0^1 x dx = 1/2", "true"), ("∫_0^1 x dx = 1/3", "false"), ("∫₀¹ x² dx = 1/3", "true"), ("∫_0^2π sin²θ dθ = π", "true"),
+    ("∫₀ᵀ t dt = T²/2", "true"),
     ("∫_{-L/2}^{L/2} (m/L) x² dx = m L²/12", "true"), ("∫_0^1 ∫_0^1 x y dx dy = 1/4", "true"),
     ("I_zz = ∫ρ(x² + y²) dV", "recognised"), (r"I_{xy} = -\iiint_V \rho\, x y\, dV", "recognised"),
 ])  # fmt: skip
 def test_an_integral_is_read_as_printed(text, verdict):
     assert symrot.check(text, repair=False).verdict == verdict
+
+
+def test_a_raised_limit_is_a_whole_number_or_a_time():
+    with pytest.raises(InputError, match="a whole number or T as a raised limit"):
+        symrot.check("∫₀⁺ x dx = 1")
 
 
 def test_an_integral_over_a_volume_needs_a_density():

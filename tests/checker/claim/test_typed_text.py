@@ -128,7 +128,7 @@ def test_the_split_of_a_word_is_told():
 REFUSED = (
     ("2x", "'==' between"), ("x 2 = 1", "a product sign before a number at position 3"), ("sin = 1", "brackets after the function sin"),
     ("sin^x y = 1", "a number as the exponent of sin"), ("∫x = 1", "limits and dx, as in"),
-    ("∂x = 1", "write diff"), ("Σx = 0", "write the terms"),
+    ("∂x = 1", "write diff"), ("Σx = 0", "write the terms"), ("y = ¹/₀", "a divisor that is not zero at position 5"),
     ("x.applyfunc(f) == 1", "T, the transpose, or another of"), ("x.__class__ == 1", "position 3"), ("x.y == 1", "position 3"),
     ("x.free_symbols == 1", "position 3"), ("open(x + y) == 1", "'open'"), ("(x + = 1", "a number, a name"),
     ("x² + (y = 1", r"'\)'"), ("x = 1 < 2", "a chain of equals signs"), ("|x = 1", r"'\|'"), ("t' = 1", "may depend on t"),

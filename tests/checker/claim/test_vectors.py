@@ -14,6 +14,7 @@ IDENTITIES = (
     r"\tilde{\mathbf a}\,\mathbf b = \mathbf a\times\mathbf b",
     r"[\mathbf a\times]\mathbf b = -[\mathbf b\times]\mathbf a",
     r"\hat n\cdot\hat n = 1",
+    r"|q_{1:3}|^2 = q_1^2 + q_2^2 + q_3^2",
     r"\hat{\mathbf n}\times(\hat{\mathbf n}\times\mathbf v) = (\hat{\mathbf n}\cdot\mathbf v)\hat{\mathbf n} - \mathbf v",
     r"[\hat n]_\times^2 = \hat n\hat n^T - I",
     r"[\hat n]_\times^3 = -[\hat n]_\times",

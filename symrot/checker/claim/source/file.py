@@ -54,7 +54,7 @@ def read_claims(path: str | Path) -> list[Claim]:
     Raises
     ------
     InputError
-        If a claim cannot be read; the message names the file, the claim, the key and the expected value.
+        If the file or one of its claims cannot be read.
     """
     entries = read_entries(path)
     for entry in entries:
@@ -123,7 +123,7 @@ def _claim(entry: dict[str, Any], number: int, label: str) -> Claim:
         if defined in known:
             raise InputError(f"{place}: define: expected a new name, got {defined!r}, which the claim already uses")
         known.add(defined)
-        own = Declared((known | {*symbols}) - {*functions}, functions)
+        own = Declared(known - {*functions}, functions)
         define.append((defined, read_expression(formula, f"{place}: define {defined}", own)))
         sources[f"define.{place_of}"] = formula
     own = Declared(known - {*functions}, functions)

@@ -27,14 +27,16 @@ def claims_of_reading(
     reading: Reading, source: str, assume: Sequence[str] = (), units: Mapping[str, str] | None = None,
     stated: Context = NO_CONTEXT,
 ) -> list[list[Claim]]:  # fmt: skip
-    """Return the claims of one reading (interpretation) of a text: for each line, one claim per equals sign."""
+    """Return the claims of one reading (interpretation) of a text: for each line, one claim per equals sign.
+
+    ``stated`` is what the user says in words about names and the body.
+    """
     define: list[tuple[str, Node]] = []
     lines = []
     reading = with_rates(reading)
     reading = replace(reading, lines=_with_substitutions_first(reading.lines))
     if sum(len(chain.links) for chain in reading.lines) > MOST_EQUATIONS:
         raise InputError(f"expected at most {MOST_EQUATIONS} equations in one text; a file of claims may have more")
-    # ``stated`` is what the user says in words about names and the body
     names = {str(n.value) for chain in reading.lines for n in nodes_of(*chain.sides)}
     check_units(dict(units or {}), names, "claim")
     units = {**stated.units(names - {*reading.vectors}, units or {}), **(units or {})}
@@ -102,7 +104,10 @@ def _with_signs_of_products(assume: Sequence[str], stated: Context) -> tuple[lis
 
 
 def _complex_numbers(lines: Sequence[Chain], formulas: Sequence[Node]) -> dict[str, Node]:
-    """Return the formula of each complex number z: ``x + i*y`` if a line defines z so, else ``Re_z + i*Im_z``."""
+    """Return {"z": formula} for the complex numbers z that lines define by formulas with i, such as ``x + i*y``.
+
+    If no line does, the formulas are ``Re_z + i*Im_z``; or they are i itself, for lines that only name i.
+    """
     unit = imaginary_unit(formulas)
     if unit is None:
         return _names_of_unit(lines, formulas) or open_numbers(formulas)

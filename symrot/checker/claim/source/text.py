@@ -22,7 +22,7 @@ from symrot.checker.arrays.pauli import with_pauli_matrices
 from symrot.checker.arrays.quaternions import Quaternions, used_quaternions
 from symrot.checker.arrays.rotated_vectors import as_matrix_of_map
 from symrot.checker.claim.claims import Claim, assumed_names
-from symrot.checker.claim.functions import BUILT_IN, ROTATIONS
+from symrot.checker.claim.functions import BUILT_IN, ROTATIONS, arguments_expected
 from symrot.checker.claim.quantities import (
     OTHER_MEANINGS,
     has_natural_base,
@@ -44,7 +44,7 @@ from symrot.checker.claim.vectors import Vector, gyroscopic_tensors, is_tensor, 
 from symrot.checker.latex.reader import Names, read_latex
 from symrot.checker.typed.readings import Declared, Relation
 from symrot.checker.units.units import read_unit
-from symrot.errors import InputError
+from symrot.errors import InputError, complaint
 
 __all__ = [
     "ON_PAULI", "check_units", "claim_of_relation", "claim_of_text", "functions_of_time", "is_latex", "read_hypothesis",
@@ -79,11 +79,13 @@ def claim_of_relation(
     Raises
     ------
     InputError
-        For a relation that is no equation, and for units of names that the claim does not have.
+        For a relation that is no equation, a built-in function with too few or too many arguments, a hypothesis that
+        cannot be read, and a unit that is unknown or belongs to a name that the claim does not have.
     """
     if relation[0] != "==":
         instead = "an inequality cannot be decided here; write '=' to ask whether both sides are equal"
         raise InputError(f"expected a claim with '=', got '{relation[0]}' in {source[:60]!r} ({instead})")
+    _check_arguments((*relation[1:], *(tree for _, tree in define), *context), source.strip())
     relation, on_indices = written_out(relation)
     notes = [*notes, *([on_indices] if on_indices else [])]
     relation, on_form = _with_own_name(relation)
@@ -179,6 +181,13 @@ def claim_of_relation(
         unsplit=unsplit,
         notes=(*notes, *(f"{letter} is read as a quantity, not as {OTHER_MEANINGS[letter]}" for letter in letters)),
     )
+
+
+def _check_arguments(trees: Sequence[Node], source: str) -> None:
+    """Raise InputError if a built-in function, such as ``dot``, has too few or too many arguments in a tree."""
+    for node in nodes_of(*trees):
+        if node.kind == "call" and node.value in BUILT_IN and (expected := arguments_expected(node)):
+            raise complaint(source, "", node.span[0], expected)
 
 
 def _with_own_name(relation: Relation) -> tuple[Relation, str]:
@@ -347,8 +356,10 @@ def _with_rotated_axes(relation: Relation) -> Relation:
 
 
 def read_hypothesis(source: str, where: str, declared: Declared | None = None, words: Collection[str] = ()) -> Relation:
-    """Return a hypothesis such as ``x > 0`` as (sign, left, right); names in ``words`` are not split into letters."""
-    # ``declared`` are the names of a claim that declares its names
+    """Return a hypothesis such as ``x > 0`` as (sign, left, right); raise InputError if it cannot be read.
+
+    ``declared`` are the names of a claim that declares its names; names in ``words`` are not split into letters.
+    """
     if declared is None and isinstance(source, str) and is_latex(source):
         relation = read_latex(source, where).relation
     elif declared is None:

@@ -49,7 +49,6 @@ def substitutions_of_axis_angles(context: Context, sides: Sequence[Expr]) -> Ite
     moments = [atom for atom in names if atom not in angles]
     if len(angles) != 2 or len(moments) != 2 or not {side.func for side in sides} & {tan}:
         return
-    # theta is the angle from the axis to the angular momentum, gamma that to the angular velocity
     velocity = (symbols.omega_1, symbols.omega_3)
     momentum = diag(A, C) * diag(*velocity)
     # the angle of a vector to the axis has its components across and along the axis as sine and cosine

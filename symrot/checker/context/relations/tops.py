@@ -94,10 +94,8 @@ def _is_fitting(names: Mapping[Expr, str], values: Mapping[Expr, Expr], own: Seq
     (``has_body``), a letter such as p_theta, or one of the titles ``own`` of its quantities must imply a top.
     """
     letters: dict[Expr, str] = {}
-    # no two letters mean the same quantity
     same = all(letters.setdefault(value, names[atom]) == names[atom] for atom, value in values.items())
     moments = {A, C} & {*values.values()}
-    # a top is meant: the context, a letter such as p_theta, or titles of derived quantities (``own``) imply it
     is_evident = has_body or (any(title in EVIDENT for title in own) and THETA in values.values())
     is_evident = is_evident or any(map(CONJUGATE.fullmatch, names.values()))
     is_evident = is_evident or {"momentum of spin", "energy without the energy of the spin"} <= {*own}

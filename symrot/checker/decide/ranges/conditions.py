@@ -62,7 +62,6 @@ class Range:
             distance = None if bound is None else sign * (bound - root)
             if distance is not None and distance.is_nonnegative:
                 return sign, bool(distance.is_zero) and closed
-        # the sign is not known
         return 0, True
 
 

@@ -56,7 +56,8 @@ def _leaves(formula: Expr) -> list[Expr]:
 def sign_and_factors(formula: Expr) -> tuple[int, dict[Expr, int]] | None:
     """Return (sign, powers) for a formula: (-1, {x: 2, y: -1}) for ``-4*x**2/y``. Return None if they are unknown.
 
-    The powers map each factor with symbols to its exponent; of the constant factors, only the sign is returned.
+    The powers map each factor with symbols to its exponent; of the constant factors, only the sign is returned. x takes
+    the place of a factor such as ``x + sqrt(x^2 - 1)``, which has the same sign.
     """
     above, below = sympy.fraction(sympy.together(formula))
     sign, powers = 1, dict[Expr, int]()

@@ -16,7 +16,9 @@ SOLIDS, AXES = "derivations/standard_solids.md", "derivations/parallel_axis.md"
 
 
 def bodies() -> Iterator[Named]:
-    """Yield moments of inertia with a density, radii of gyration, and the parallel- and perpendicular-axis theorems."""
+    """Yield radii of gyration, the parallel- and perpendicular-axis theorems, and moments of inertia that books give
+    with a density, or for a box diagonal, a right triangle, a tilted rod and a pair of masses.
+    """
     for name, shape in SHAPES.items():
         if shape.kind == "points":
             continue

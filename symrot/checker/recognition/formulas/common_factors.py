@@ -46,9 +46,9 @@ def without_common_powers(difference: Expr) -> Expr:
 
 
 def _common_powers(formula: Expr) -> dict[Expr, int] | None:
-    """Return the powers of symbols that divide all terms of a formula: {a: 1, b: -1} for ``a*c/b + a/b``.
+    """Return the powers of symbols and functions that divide all terms of a formula: {a: 1, b: -1} for ``a*c/b + a/b``.
 
-    None if the formula contains a root, or a sum as a divisor.
+    None if the formula contains a power whose exponent is no integer, such as a root, or a sum as a divisor.
     """
     if isinstance(formula, Add):
         terms = [_common_powers(term) for term in formula.args]
@@ -69,10 +69,10 @@ def _common_powers(formula: Expr) -> dict[Expr, int] | None:
     if isinstance(formula, Pow):
         inner = _common_powers(formula.base)
         if inner is None or not formula.exp.is_Integer or (formula.exp < 0 and formula.base.is_Add):
-            return None  # a root, or a sum as a divisor
+            return None
         return {part: power * int(formula.exp) for part, power in inner.items()}
     return {} if formula.is_number else {formula: 1}
 
 
 LONGEST = 120
-"""Common factors are not divided out of a difference with this many operations or more."""
+"""A difference with this many operations or more is not reduced to lowest terms, which would take long."""

@@ -14,7 +14,7 @@ from symrot.conventions import SEQUENCES
 __all__ = ["RARE", "is_in_usual_sequence", "misfit_of", "rarity_of", "strangeness_of"]
 
 RARE = ("annulus", "thin tube", "conical shell", "elliptical")
-"""Bodies whose moments a faulty formula is unlikely to mean."""
+"""Words in the names of bodies whose moments a faulty formula is unlikely to mean."""
 
 AXES = ("x1Ap", "y2Bq", "z3Cr")
 """For each of three axes, the last characters of symbols that belong to the axis: omega_x, I_1, A and p belong to the

@@ -47,10 +47,15 @@ MOST_TERMS = 5000
 """An equation with more terms, after multiplying out, is not compared with known relations, which are all shorter."""
 
 MOST_READINGS = 4
-"""The largest number of known formulas that one verdict names."""
+"""The largest number of known formulas or relations that `readings_of_formula` and `readings_of_relation` return."""
 
 SQUARED = ", squared"
 """The end of the name of a known formula that gives the square of the named quantity."""
+
+SIGNED = ("angular velocity", "scalar component")
+"""Beginnings of the names of such formulas for a quantity that may be negative: for others, a claim ``k = -sqrt(..)``
+has a wrong sign.
+"""
 
 
 def least_symbols_related(left: Node, right: Node) -> int:
@@ -67,10 +72,12 @@ def least_symbols_related(left: Node, right: Node) -> int:
 def readings_of_claim(
     claim: Claim, named: NamedFormula, tree: Node, least_symbols: int, interpreter: Interpreter | None = None
 ) -> tuple[Identification, ...]:
-    """Return the known formulas and relations that a claim with the right side ``tree`` can mean, the likeliest first.
+    """Return the known formulas, or else relations, that a claim with the right side ``tree`` can mean.
 
-    Empty if a scalar formula has fewer than ``least_symbols`` symbols; for relations, and for names with a usual
-    meaning, other limits hold. ``interpreter`` is by default that of the claim.
+    The likeliest come first, MOST_READINGS at most.
+
+    A scalar formula with fewer than ``least_symbols`` symbols is compared with no known formula. For known relations,
+    and for names with a usual meaning, other limits hold. ``interpreter`` is by default that of the claim.
     """
     interpreter = claim.interpreter() if interpreter is None else interpreter
     solved: tuple[Identification, ...] = ()
@@ -90,9 +97,10 @@ def all_letters_stated(claim: Claim, named: NamedFormula) -> bool:
 def readings_of_relation(
     claim: Claim, named: NamedFormula, tree: Node, least_symbols: int, interpreter: Interpreter | None = None
 ) -> tuple[Identification, ...]:
-    """Return the known relations that are equivalent to the equation ``named.side == tree``.
+    """Return the known relations, MOST_READINGS at most, that are equivalent to the equation ``named.side == tree``.
 
-    Empty if the equation has fewer than ``least_symbols`` symbols; also for matrices, roots of sums and long equations.
+    Empty if the equation cannot be read or has fewer than ``least_symbols`` symbols; also for matrices, roots of sums
+    and long equations.
     """
     difference = sum_of([named.side, negated(tree)])
     try:
@@ -121,10 +129,10 @@ def has_root_of_sum(value: Any) -> bool:
 def readings_of_formula(
     claim: Claim, named: NamedFormula, formula: Node, least_symbols: int, interpreter: Interpreter | None = None
 ) -> tuple[Identification, ...]:
-    """Return the known formulas for the claim's quantity that are equal to ``formula``, the likeliest first.
+    """Return the likeliest known formulas for the claim's quantity that are equal to ``formula``.
 
-    Empty if a scalar ``formula`` has fewer than ``least_symbols`` symbols. If this limit is LEAST_SYMBOLS, one symbol
-    suffices for a quantity whose name has a usual meaning, such as I_zz.
+    Empty if ``formula`` cannot be read, or is a scalar with fewer than ``least_symbols`` symbols. If this limit is
+    LEAST_SYMBOLS, one symbol suffices for a quantity whose name has a usual meaning, such as I_zz.
     """
     try:
         value = claim.with_definitions((interpreter or claim.interpreter()).read(formula))
@@ -140,10 +148,12 @@ def readings_of_formula(
     letters = {*letters_of(formula)}
     is_tangent = named.side.kind == "call" and named.side.value == "tan"
     searched, ending = _without_function(value, is_tangent)
+    is_negative = ending == SQUARED and value.as_coeff_Mul()[0] < 0
 
     def fits(known: Identification) -> bool:
         return (
             ending_of(known.name) == ending
+            and not (is_negative and not known.name.startswith(SIGNED))
             and fits_quantity(named, known, is_matrix(value))
             and fits_context(claim.context, named, replace(known, name=known.name.removesuffix(ending)), letters)
             and not has_other_length(known.name, known.mapping.items())
@@ -162,8 +172,9 @@ def readings_of_formula(
 def _without_function(value: Any, of_tangent: bool = False) -> tuple[Any, str]:
     """Return (u, ending) for ``acos(u)`` or ``sqrt(u)``: u is looked up among formulas whose names end with ``ending``.
 
-    ``acos(u)`` gives (u, ", acos"), ``sqrt(u)`` gives (u, ", squared"); another u gives (u, "").
-    With ``of_tangent``, for a claim ``tan(x) = a/b``, ``atan(a/b)`` gives (Matrix([a, b]), ", atan2").
+    ``2*acos(u)`` gives (u, ", 2 acos"), likewise asin and atan2; ``a*sqrt(u)`` gives (a**2*u, ", squared"). Any other
+    ``value`` gives (value, ""). With ``of_tangent``, for a claim ``tan(x) = a/b``, ``atan(a/b)`` gives
+    (Matrix([a, b]), ", atan2").
     """
     if is_matrix(value):
         return value, ""

@@ -129,7 +129,8 @@ def _near_usual(claim: Claim, named: NamedFormula, readings: Sequence[Identifica
 def _by_matrix(claim: Claim, named: NamedFormula, repair: bool) -> Verdict | None:
     """Return the verdict on the matrix of a claim ``omega = [matrix] q_dot``, with repairs of the whole claim.
 
-    None for claims of another form, and for a matrix that is neither equal nor near to a known rate matrix.
+    None for claims of another form, for a matrix with MOST_COMPONENTS entries or fewer, and for a matrix that is
+    neither equal nor near to a known rate matrix.
     """
     factors = named.formula.args if named.formula.kind == "product" else ()
     is_map = len(factors) == 2 and factors[0].value == "Matrix" and (is_atom(factors[1]) or is_derivative(factors[1]))
@@ -147,7 +148,7 @@ def _by_matrix(claim: Claim, named: NamedFormula, repair: bool) -> Verdict | Non
 
 
 def _by_inverse(claim: Claim, named: NamedFormula, repair: bool) -> Verdict | None:
-    """Return the verdict on ``w' = J^-1*(M - ..)``, for a matrix J, which is the verdict on ``J*w' = M - ..``.
+    """Return the verdict on ``w' = J^-1*(M - ..)``, for a J that the claim defines: the verdict on ``J*w' = M - ..``.
 
     Return None for claims of another form, and if symrot knows no formula like ``J*w' = M - ..``.
     """
@@ -190,7 +191,10 @@ def verdict_on_relation(claim: Claim) -> Verdict | None:
 
 
 def _slowing_down(claim: Claim, named: NamedFormula) -> tuple[Identification, ...]:
-    """Return the known formulas for constant angular acceleration that a claim gives with alpha as a deceleration."""
+    """Return the known formulas for constant angular acceleration that a claim gives with its alpha as a deceleration.
+
+    Other letters of ``DECELERATION`` count too.
+    """
     letters = sorted(name for name in names_in(named.formula) if re.fullmatch(DECELERATION, name))
     for letter in letters:
         tree = Node("name", letter)

@@ -55,7 +55,10 @@ def has_arrays(formula: Node, numeric: NumericFilter) -> bool:
 
 
 def array_faults(formula: Node, numeric: NumericFilter, letters: Letters) -> list[ArrayFault]:
-    """Return the edits that may undo a fault of a formula, each with the values of the edited formula."""
+    """Return at most MOST_EDITS edits that may undo a fault of a formula, each with the edited formula's values.
+
+    They are sorted by ``total``. For a scalar formula, they only add brackets or exchange two moments of inertia.
+    """
     # other faults of scalar formulas are sought part by part, in the module `parts`
     if has_arrays(formula, numeric):
         edits = _edits(formula, numeric, letters)

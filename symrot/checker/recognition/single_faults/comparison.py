@@ -50,7 +50,7 @@ class Near(NamedTuple):
     is_shifted: bool  # the claim's formula is ``known`` plus m d^2, for a parallel axis
     is_symmetric: bool  # the claim's formula is ``known`` for a body with two equal moments of inertia
     letter: str  # the changed part, if it is a symbol
-    array_letters: int = 0  # letters of a formula with vectors, each component as one letter; 0 for other formulas
+    array_letters: int = 0  # number of letters, each component as one, in a formula with vectors; 0 for other formulas
     renaming: tuple[tuple[str, str], ...] = ()  # (symbol of ``known``, letter of the claim)
 
 

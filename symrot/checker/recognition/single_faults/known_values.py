@@ -37,7 +37,7 @@ SQUARED = ", squared"
 
 
 def quantity_node(named: NamedFormula) -> Node:
-    """Return the name or rate, such as L or ``diff(L(t), t)``, for which a claim is solved."""
+    """Return the name or rate, such as L or ``diff(L(t), t)``, for which a claim is solved; else its left side."""
     atoms = (node for _, node in walk(named.side) if is_atom(node))
     own = (atom for atom in atoms if named.name in (atom.value, *(str(n.value) for _, n in walk(atom))))
     return next(own, named.side)

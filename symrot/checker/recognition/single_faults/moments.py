@@ -38,7 +38,6 @@ def is_shifted_moment(actual: Values, known: Values, letters: Letters) -> bool:
     if min(ratios) <= 1:
         return False
     added = [value - other for value, other in zip(actual, known, strict=True)]
-    # d is a simple fraction of one length of the claim, or has two such components
     for mass, *lengths in permutations(letters.atoms.values(), 2):
         if _are_squares([_share(added, mass, *lengths)]):
             return True
@@ -69,7 +68,6 @@ def _shares(added: Sequence[float], mass: Values, lengths: Sequence[Values]) -> 
     shares = ((first * d - b * second) / below, (a * second - first * c) / below)
     fits = all(near(value / m, shares[0] * p + shares[1] * q)
                for value, m, (p, q) in zip(added, mass, rows, strict=True))  # fmt: skip
-    # None in place of a number that is no simple fraction
     return [rational([share]) for share in shares] if fits else [None]
 
 

@@ -191,7 +191,6 @@ def parts(whole: Valued, needed: Values) -> Iterator[Part]:
     values = whole.values
     if values is None or [*map(shape_of, values)] != [*map(shape_of, needed)]:
         return
-    # in a + b, the right value of a is that of the whole minus b
     yield Part(whole.path, whole.node, values, needed, whole.parent)
     if whole.entries:
         lists = [[*map(entries_of, side)] for side in (values, needed)]

@@ -47,11 +47,11 @@ MOST = 6
 def renamings(known: Sequence[str], own: Sequence[str], angles: Collection[str] = ()) -> list[dict[str, str | None]]:
     """Return the most plausible renamings of the names ``known`` of a known formula to the names ``own`` of a claim.
 
-    One name may be renamed to None, because the claim lacks it, and one name of the claim may be left over.
+    At most MOST are returned. One name may be renamed to None, because the claim lacks it, and one name of the claim
+    may be left over. ``angles`` are the claim's names in sines and cosines.
     """
     if abs(len(known) - len(own)) > 1:
         return []
-    # angles: the names of the claim in sines and cosines
     fitting = {name: [other for other in own if is_fitting(name, other, other in angles)] for name in known}
     order = sorted(known, key=lambda name: (len(fitting[name]), name))
     complete = []
@@ -72,7 +72,7 @@ def _rank(renaming: dict[str, str | None]) -> tuple[int, int, bool, int]:
 def renaming_of_product(own: Sequence[str]) -> dict[str, str | None] | None:
     """Return {"q0": "a1", "p0": "a2", ..}, the renaming of a quaternion product, for the names a1, .., d1, a2, .., d2.
 
-    None for other names.
+    None for other names. One of the eight names may be missing; its symbol is then renamed to None.
     """
     places = {(match[1], match[2]): name for name in own if (match := NUMBERED.fullmatch(name))}
     letters, numbers = sorted({letter for letter, _ in places}), sorted({number for _, number in places})
@@ -106,7 +106,10 @@ def _has_letter_of(name: str, other: str) -> bool:
 
 
 def strangeness(renaming: dict[str, str | None]) -> int:
-    """Return how many names a renaming changes; a change of a radius to another length, or back, counts three times."""
+    """Return how many names a renaming changes or leaves out; a radius renamed to another length counts three times.
+
+    So does another length that is renamed to a radius.
+    """
     changed = [name for name, other in renaming.items() if other is None or plain_name(other) != name]
     lengths = [name for name in changed if UNIT_OF_NAME.get(name) == "m" and name not in COORDINATES]
     unusual = [name for name in lengths if (other := renaming[name]) is not None
@@ -123,7 +126,7 @@ def _extended(
     mean the same, and ``count`` is the number of names in the claim, of which at most one is left over. A symbol whose
     own name is among those of the claim keeps its name.
     """
-    yield None  # the caller counts these, to give up after too many steps
+    yield None
     if not order:
         used = sum(other is not None for other in renaming.values())
         if count - used <= 1:
@@ -145,7 +148,7 @@ def is_fitting(known: str, own: str, is_angle: bool) -> bool:
 
     ``is_angle`` tells whether ``own`` occurs in sines or cosines of the claim.
     """
-    name = plain_name(own)  # is_angle: the claim has it in sines or cosines
+    name = plain_name(own)
     if known == name:
         return True
     unit = UNIT_OF_NAME.get(known)

@@ -49,8 +49,9 @@ Renaming = dict[str, str | None]
 def near_formulas(claim: Claim, named: NamedFormula, fits: Callable[[Known], bool]) -> list[Near]:
     """Return changes of a claim's formula that may each turn it into a known formula, the cheapest first.
 
-    ``fits(known)`` decides which known formulas are compared. A single result with the fault code "none" means that the
-    formula equals a known one without a change. The list is empty if the formula has no values or is too long.
+    ``fits(known)`` decides which known formulas are compared. A single result with the fault code "none" means that a
+    formula with the root of a sum equals a known one without a change. The list is empty if no such change is found, if
+    the formula has no values or is too long, and if it equals a known formula under the hypotheses of the claim.
     """
     search = _search(claim, named)
     if search is None:
@@ -58,7 +59,6 @@ def near_formulas(claim: Claim, named: NamedFormula, fits: Callable[[Known], boo
     nearest: dict[tuple[Node, str], Near] = {}
     for known, renaming in islice(_pairs(claim, named, search, fits), MOST_PAIRS):
         near_ones = compare(search, known, renaming)
-        # under the hypotheses the claim's formula equals a known one: no change is needed
         if near_ones is None and claim.hypotheses:
             return []
         if near_ones is None and has_root_of_sum(named.formula):
@@ -104,7 +104,7 @@ def _pairs(
 def _search(claim: Claim, named: NamedFormula) -> Search | None:
     """Return the search for faults of a claim's formula; None for a formula without values, or one that is too long.
 
-    The latest searches are stored: a claim is searched once for each context that it may have.
+    The latest searches are stored, since one claim may be compared several times, for instance in other contexts.
     """
     equations = claim.define, claim.hypotheses, claim.relation
     key = equations, claim.symbols, claim.functions, claim.implied, named[:4], named.solve is None

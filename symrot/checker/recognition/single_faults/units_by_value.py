@@ -27,7 +27,6 @@ def has_other_unit(named: NamedFormula, known: Known, nodes: dict[str, Node], le
     ``nodes`` maps the symbols of ``known`` to letters of the claim. False if a unit is unknown, or if a formula is a
     matrix, zero or undefined at a test point.
     """
-    # nodes: known symbol -> letter of the claim
     scales = {node: _scale(UNIT_OF_NAME.get(mine)) for mine, node in nodes.items()}
     if None in scales.values() or any(atom not in scales for atom in letters.atoms):
         return False

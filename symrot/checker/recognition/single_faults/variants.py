@@ -118,6 +118,8 @@ def _of_function(node: Node, parent: str, values: Values, letters: Letters) -> I
         return
     (angle,) = node.args
     own = letters.angles[angle]
+    if not all(own):
+        return  # cot and csc have no value at 0
     for name in FUNCTIONS:
         cost = COST["sin_cos_swap"] + (0.0 if OPPOSITE[node.value] == name else COST["other_function"])
         yield Variant(Correction(replace(node, value=name), "sin_cos_swap", cost), tuple(map(FUNCTIONS[name], own)))

@@ -53,7 +53,8 @@ def single_edits(
         Whether the claim contains a derivative. Exchanged factors, as in ``diff(R, t) == R*W`` for ``W*R``, then count
         as a confusion of the body frame with the space frame; otherwise as a wrong order of factors.
     opened : function
-        Tells whether an edit may change the part at a path; by default it may change every part.
+        Tells whether an edit may change the part at a path; by default it may change every part. It is not asked about
+        edits that change all occurrences of a name or angle.
     """
     yield from _everywhere(tree, matrices)
     order = "frame_body_space" if moving else "commutator_order"
@@ -102,7 +103,7 @@ def _changes(
     order : str
         The code of the fault if two matrices in a product are in the wrong order.
     lone : bool
-        Whether the part is an entry of a matrix or list; only such an entry, or a whole side, may become 0.
+        Whether the part is an entry of a matrix or list; a number may become 0 only as such an entry or a whole tree.
     """
     if node.kind == "sum":
         yield from edits_of_sum(node, matrices)
