@@ -20,8 +20,8 @@ __all__ = ["in_degrees", "with_units"]
 
 CIRCULAR = ("sin", "cos", "tan", "cot", "sec", "csc")
 DECIMAL, ROUNDED_WHOLE = r"\d+\.\d+(?:[eE][+-]?\d+)?", r"[1-9]\d*[1-9]"
-"""Patterns of a decimal number, and of a whole number that may have been rounded to ones, such as 37. A number that
-ends with 0 does not match: 40 may have been rounded to tens or to ones."""
+"""Patterns of a decimal number, and of a whole number of two or more digits that may have been rounded to ones, such as
+37. A number that ends with 0 does not match: 40 may have been rounded to tens or to ones."""
 
 LONG_WHOLE = 3
 """The smallest number of digits of a whole number that may be a rounded rational value, as in 1 hp = 746 W."""

@@ -179,7 +179,10 @@ def _is_norm(side: Node, other: Node) -> bool:
 
 
 def formulas_nearby(claim: Claim, named: NamedFormula) -> list[Near]:
-    """Return the known formulas for the claim's quantity that differ from its formula in one part, likeliest first."""
+    """Return the known formulas for the claim's quantity that differ from its formula by one fault, likeliest first.
+
+    A few differ by two wrong signs. A single result with the code "none" does not differ at all.
+    """
     words, plain = words_of(named), quantity_name(named)
     nearby = [
         near
