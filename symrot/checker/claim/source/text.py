@@ -85,7 +85,7 @@ def claim_of_relation(
     if relation[0] != "==":
         instead = "an inequality cannot be decided here; write '=' to ask whether both sides are equal"
         raise InputError(f"expected a claim with '=', got '{relation[0]}' in {source[:60]!r} ({instead})")
-    _check_products(relation, source.strip())
+    _check_calls(relation, source.strip())
     relation, on_indices = written_out(relation)
     notes = [*notes, *([on_indices] if on_indices else [])]
     relation, on_form = _with_own_name(relation)
@@ -183,9 +183,15 @@ def claim_of_relation(
     )
 
 
-def _check_products(relation: Relation, source: str) -> None:
-    """Raise InputError if a call of cross or dot in a relation has not two arguments."""
+def _check_calls(relation: Relation, source: str) -> None:
+    """Raise InputError for ``cross`` or ``dot`` without exactly two arguments, and for ``Matrix`` or ``diff`` without
+    brackets.
+
+    The functions that look for vectors and matrices in a relation take the arguments of such calls for granted.
+    """
     for node in nodes_of(*relation[1:]):
+        if node.kind == "name" and node.value in ("Matrix", "diff"):
+            raise complaint(source, "", node.span[0], f"brackets after the function {node.value}")
         if node.kind == "call" and node.value in ("cross", "dot") and len(node.args) != 2:
             expected = f"2 argument(s) of {node.value} instead of {len(node.args)}"
             raise complaint(source, "", node.span[0], expected)
