@@ -186,7 +186,9 @@ def read_sheet(data: Any, where: str) -> ExerciseSheet:
         if data["schema"] != SCHEMA:
             raise InputError(f"{where}: expected exercises of schema {SCHEMA}, got {data['schema']!r}")
         return ExerciseSheet(tuple(Exercise.from_json(each) for each in data["exercises"]))
-    except (KeyError, TypeError, AttributeError) as fault:
+    except (KeyError, TypeError, ValueError, AttributeError) as fault:
+        if isinstance(fault, InputError):
+            raise
         raise InputError(
             f"{where}: expected the JSON that `symrot exercise --format json` writes, got other data ({fault})"
         ) from None

@@ -12,7 +12,7 @@ from itertools import pairwise, product
 from typing import Any, NamedTuple
 
 from symrot.errors import InputError
-from symrot.formula.tree import Node, evaluate
+from symrot.formula.tree import Node, evaluate, names
 from symrot.inertia import hulls
 from symrot.inertia.containment import are_apart, excess, is_convex, outside
 from symrot.inertia.cutting import cut
@@ -60,8 +60,19 @@ class DensePart(NamedTuple):
         if isinstance(self.density, Fraction):
             return float(self.density)
         x, y, z = self.solid.pose.from_body(point)
-        names = {name: float(value) for name, value in scalars(SHAPES[self.solid.shape], self.exact_dimensions).items()}
-        return float(evaluate(self.density, {"pi": math.pi, **names, "x": x, "y": y, "z": z}, None, float))
+        numbers = {name: float(value) for name, value in self._scalars.items()}
+        return float(evaluate(self.density, {"pi": math.pi, **numbers, "x": x, "y": y, "z": z}, None, float))
+
+    def has_density_of(self, other: "DensePart") -> bool:
+        """Return whether both parts have the same formula of density, with the same numbers, in the same axes."""
+        if isinstance(self.density, Fraction) or (self.density, self.solid.pose) != (other.density, other.solid.pose):
+            return False
+        mine, others = self._scalars, other._scalars
+        return all(mine.get(name) == others.get(name) for name in names(self.density))
+
+    @property
+    def _scalars(self) -> dict[str, Any]:
+        return scalars(SHAPES[self.solid.shape], self.exact_dimensions)
 
 
 def pose(at: Sequence[Any], rotation: Sequence[Sequence[Any]]) -> hulls.Pose:
@@ -191,8 +202,7 @@ def _carry(parts: Sequence[DensePart], holes: Sequence[DensePart]) -> bool:
     emptied = Fraction(0)
     for hole in holes:
         if not isinstance(hole.density, Fraction):  # a polynomial is compared with the same polynomial alone
-            same = [part for part in parts if (part.density, part.solid.pose) == (hole.density, hole.solid.pose)]
-            return len(holes) == 1 and bool(same)
+            return len(holes) == 1 and any(part.has_density_of(hole) for part in parts)
         emptied += hole.density
     return float(emptied) <= float(filled) * (1 + DENSITY)
 

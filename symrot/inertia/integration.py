@@ -193,6 +193,8 @@ def density_polynomial(density: Node, values: Mapping[str, Polynomial], source: 
         if isinstance(reason, InputError):
             raise
         raise InputError(f"{expected} ({reason})") from None
+    except RecursionError:
+        raise InputError(f"{expected} (it has too many operations)") from None
     assert isinstance(polynomial, Polynomial)
     return polynomial
 
@@ -230,7 +232,12 @@ def require_not_negative(density: Node, points: Iterable[Mapping[str, float]], s
     A point is a mapping of x, y, z (m) and of other names in the density to numbers; ``source`` is the density as the
     user wrote it, for the message.
     """
-    values = [(float(evaluate(density, {"pi": math.pi, **point}, None, float)), point) for point in points]
+    try:
+        values = [(float(evaluate(density, {"pi": math.pi, **point}, None, float)), point) for point in points]
+    except OverflowError:
+        raise InputError(
+            f"{prefix(where)}density: expected a density with values within the range of a double, got {show(source)}"
+        ) from None
     least, place = min(values, key=lambda each: each[0])
     # a density that is zero at a point may be negative there by rounding errors
     if least < -1e-9 * max(abs(value) for value, _ in values):

@@ -255,6 +255,8 @@ def _formula(text: str, known: Mapping[str, Expr]) -> Expr:
     except KeyError as unknown:
         expected = ", ".join(sorted(values))
         raise InputError(f"expected a formula in {expected}, got {unknown.args[0]!r} in {show(text)}") from None
+    except RecursionError:
+        raise InputError(f"expected a formula of fewer operations, got {show(text)}") from None
 
 
 def _rational(value: Fraction) -> Rational:
