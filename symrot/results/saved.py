@@ -184,6 +184,7 @@ def _saved(content: Any) -> SavedTrajectory:
     saved = SavedTrajectory(metadata, _items(content, metadata, str))
     if not isinstance(saved.metadata["status"], int) or None in saved._about:
         raise ValueError("its metadata are damaged")
+    saved.sensitivities  # noqa: B018 - a damaged record of derivatives is refused here
     for number, event in enumerate(metadata["events"], start=1):
         items = _items(content, metadata, lambda name, k=number: event_array(k, name))
         states = SavedTrajectory(metadata, [*items, *_time_items(metadata.get("sensitivities"), number)])

@@ -89,7 +89,7 @@ def scene_for(scene: Scene, texts: Sequence[str]) -> Scene:
     from dataclasses import replace
 
     sequences = []
-    for text in texts:
+    for text in (text for text in texts if isinstance(text, str)):  # others are refused when they are read
         word, _, rest = text.partition("@")[0].strip().partition("_")
         sequence = rest.partition("_")[0]
         if word == "euler" and len(sequence) == 3 and sequence not in sequences:
