@@ -70,6 +70,11 @@ def measure(name: str, method: str, samples: int, rounds: int) -> tuple[float, f
     """Return the median seconds of ``propagator(t)`` and of the bare C call.
 
     None if the method cannot compute the scene.
+
+    Raises
+    ------
+    InputError
+        If a stepper in C cannot follow the motion to its end in one call.
     """
     try:
         propagate = propagator(name, method)
