@@ -158,9 +158,12 @@ def _entry(problem: Problem, contestant: Contestant, tolerance: float, exact: Se
     for end in problem.ends:
         last, steps = follow(end)
         states.append(last if isinstance(last, State) else problem.state(last, end))
+    error = problem.worst(states, exact)
+    if not math.isfinite(error):
+        raise SymrotError("expected finite states, got infinite or undefined ones")
     run = partial(follow, problem.stop)
     # the first call is done, so its additional cost does not count: the time of a second call is measured
-    return Measured(contestant.name, tolerance, steps, problem.worst(states, exact), seconds_of(run)), run
+    return Measured(contestant.name, tolerance, steps, error, seconds_of(run)), run
 
 
 # ------------------------------------------------------------------------------------------------ reading
