@@ -225,6 +225,11 @@ def main(arguments: list[str] | None = None) -> None:
     parser.add_argument("--ensembles", action="store_true", help="measure ensembles instead of single calls")
     parser.add_argument("--most", type=int, default=SIZES[-1], help="number of trajectories in the largest ensemble")
     options = parser.parse_args(arguments)
+    try:
+        for name in options.scenes:
+            (_scene if options.ensembles else load_scene)(name)
+    except InputError as reason:
+        parser.error(str(reason))
     if options.ensembles:
         ensembles(options.scenes or [*ENSEMBLES, *MADE], options.rounds or 5, options.most)
     else:

@@ -145,7 +145,8 @@ def main() -> None:
     parser = argparse.ArgumentParser(description="derivatives of motions: symrot and heyoka")
     parser.add_argument("--rounds", type=int, default=7)
     parser.add_argument("--settings", nargs="*", default=list(SETTINGS), choices=list(SETTINGS))
-    parser.add_argument("--motion", nargs="*", default=[case.motion for case in CASES])
+    motions = [case.motion for case in CASES]
+    parser.add_argument("--motion", nargs="*", default=motions, choices=motions)
     options = parser.parse_args()
     rows = [("motion", "program", "us", "error", "time over symrot's")]
     for case in CASES:
