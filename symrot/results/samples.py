@@ -101,8 +101,8 @@ class Samples(ABC):
         Parameters
         ----------
         quantities : sequence of str, optional
-            Names among ``output.quantities`` of a scene, such as ``["omega", "energy"]``; default: those of the scene
-            and any derivatives.
+            Names that ``output.quantities`` of a scene may have, such as ``["omega", "energy"]``, and of derivatives,
+            such as ``"omega_by_weight"``; default: the output quantities of the scene and any derivatives.
 
         Returns
         -------
