@@ -51,6 +51,8 @@ TEXTS = {
     "a cross product of one vector": ("cross(a) = b", "2 argument.* of cross instead of 1"),
     "a cross product of three vectors": ("cross(a, b, c) = d", "2 argument.* of cross instead of 3"),
     "a scalar product of one vector": ("dot(a) = 3", "2 argument.* of dot instead of 1"),
+    "a derivative by nothing": ("x = diff y", "brackets after the function diff"),
+    "a matrix without entries": ("x = 2 Matrix", "brackets after the function Matrix"),
     "ragged rows": ("Matrix([[1, 2], [3]]) == 1", "equal length"),
     "wrong shapes": ("eye(2)*eye(3) == 1", "3 x 3"),
     "a derivative by a number": ("diff(x, 4) == 0", "differentiation"),

@@ -184,8 +184,13 @@ def claim_of_relation(
 
 
 def _check_arguments(trees: Sequence[Node], source: str) -> None:
-    """Raise InputError if a built-in function, such as ``dot``, has too few or too many arguments in a tree."""
+    """Raise InputError if a built-in function, such as ``dot``, has too few or too many arguments in a tree.
+
+    ``Matrix`` and ``diff`` without brackets are refused too.
+    """
     for node in nodes_of(*trees):
+        if node.kind == "name" and node.value in ("Matrix", "diff"):
+            raise complaint(source, "", node.span[0], f"brackets after the function {node.value}")
         if node.kind == "call" and node.value in BUILT_IN and (expected := arguments_expected(node)):
             raise complaint(source, "", node.span[0], expected)
 
