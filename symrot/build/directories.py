@@ -118,7 +118,10 @@ def user_directory() -> tuple[Path, str]:
 
     If the directory does not exist, it is created.
     """
-    directory = _cache_directory() / CACHE_SUBDIR
+    try:
+        directory = _cache_directory() / CACHE_SUBDIR
+    except RuntimeError:
+        return Path(CACHE_SUBDIR), "the home directory is unknown; set SYMROT_CACHE to a directory"
     try:
         if not directory.is_dir():
             for place in (*reversed(directory.parents), directory):

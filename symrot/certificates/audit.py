@@ -114,10 +114,10 @@ def audit(path: Path, symrot_statement: Callable[[Data], Data | None]) -> tuple[
         If a statement does not hold; the message names the first such statement.
     """
     data = load_certificate(path)
-    for file in data["files"]:
-        if not file.startswith("../") and not (path.parent / file).is_file():
-            raise CertificateError(f"{path}: expected its file {file} in the same folder, but it is missing")
     try:
+        for file in data["files"]:
+            if not file.startswith("../") and not (path.parent / file).is_file():
+                raise CertificateError(f"{path}: expected its file {file} in the same folder, but it is missing")
         findings = [exact_check.check(path), *_audited(path, data, symrot_statement), *_unchecked_objects(data)]
         return data, [*findings, _bounds(path, data, (path.parent / f"{data['kernel']}.c").read_text(encoding="utf-8"))]
     except CertificateError:

@@ -32,8 +32,8 @@ _CONTENT_FAULTS = (ValueError, LookupError, TypeError, AttributeError)  # as of 
 class SavedTrajectory(Samples):
     """The samples of a trajectory from a file; :func:`symrot.load` returns it. Conventions: :mod:`symrot.conventions`.
 
-    The quantities in the file are attributes, such as ``energy``; only the Euler angles in it are read by
-    ``quantity("euler")``, since :meth:`euler` computes those of any sequence.
+    The quantities in the file are attributes, such as ``energy``. Only the Euler angles in the file are read by
+    ``quantity("euler")``, since the method :meth:`euler` computes the angles of any sequence.
 
     Attributes
     ----------
@@ -184,6 +184,7 @@ def _saved(content: Any) -> SavedTrajectory:
     saved = SavedTrajectory(metadata, _items(content, metadata, str))
     if not isinstance(saved.metadata["status"], int) or None in saved._about:
         raise ValueError("its metadata are damaged")
+    saved.sensitivities  # noqa: B018 - a damaged record of derivatives is refused here
     for number, event in enumerate(metadata["events"], start=1):
         items = _items(content, metadata, lambda name, k=number: event_array(k, name))
         states = SavedTrajectory(metadata, [*items, *_time_items(metadata.get("sensitivities"), number)])

@@ -236,7 +236,7 @@ def sweep(
     >>> result.array("omega_3@end").round(6).tolist()
     [200.0, 200.0, 200.0]
     """
-    chosen = read_statistics([statistics] if isinstance(statistics, str) else statistics)
+    chosen = read_statistics(_texts(statistics, "statistics"))
     _require(keep in KEEP, "keep", f"one of {', '.join(KEEP)}", keep)
     _require(keep == "all" or bool(chosen), "keep", "statistics to compute, with keep = 'statistics'", statistics)
     target = None if path is None else _target(path, keep)
@@ -248,7 +248,7 @@ def sweep(
     if chunk is not None:
         _whole(chunk, "chunk", 10_000_000)
     folders = [table_folders] if isinstance(table_folders, str | Path) else list(table_folders)
-    texts = [outputs] if isinstance(outputs, str) else list(outputs)
+    texts = _texts(outputs, "outputs")
     job = _job(scene, vary or {}, attitudes, sampling, count, seed, texts, t, method, tolerance, folders)
     _require_averages(chosen, job.outputs)
     header = header_of(job, chunk)
@@ -274,6 +274,13 @@ def sweep(
         tables = statistics_of(store, chosen, outputs_of_store, note) if chosen else []
         store.finish(tables, only_statistics)
     return _result(store, target, job.scene.warnings)
+
+
+def _texts(value: str | Sequence[str], where: str) -> list[str]:
+    try:
+        return [value] if isinstance(value, str) else list(value)
+    except TypeError:
+        raise InputError(f"{where}: expected a text or a list of texts, got {show(value)}") from None
 
 
 def _require_averages(statistics: Sequence[Statistic], outputs: Sequence[SweepOutput]) -> None:

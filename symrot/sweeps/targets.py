@@ -54,6 +54,8 @@ def read_target(name: str, scene: Scene, content: Content | None) -> Target:
     InputError
         If the scene has no quantity with this name, or if this quantity cannot vary.
     """
+    if not isinstance(name, str):
+        raise InputError(f"vary: expected the name of a value, such as 'omega_1', got {show(name)}")
     if name in OMEGA:
         return Target(name, "rad/s")
     places = constant_places(scene)

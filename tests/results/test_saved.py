@@ -111,6 +111,10 @@ DAMAGE = {
     "no arrays": lambda arrays, metadata: metadata["arrays"].clear(),
     "arrays as a list": lambda arrays, metadata: metadata.update(arrays=[1]),
     "events as a number": lambda arrays, metadata: metadata.update(events=3),
+    "no record of derivatives": lambda arrays, metadata: metadata.update(sensitivities={}),
+    "no variables": lambda arrays, metadata: metadata.update(
+        sensitivities={"variables": [], "units": [], "groups": {}}
+    ),
 }
 
 

@@ -44,8 +44,8 @@ class Machine(Statements):
     def __init__(
         self, text: str, number: Callable[[Fraction], Any], own: Mapping[str, tuple[str, Callable[..., Any]]]
     ) -> None:
-        super().__init__(text, number, own)
         try:
+            super().__init__(text, number, own)
             while self.index < len(self.tokens):
                 self._declared_outside()
         except _FAULTS as reason:

@@ -44,8 +44,8 @@ def excerpt(whole: Page, number: int, detail: bool = False) -> Page:
         If there is no such step.
     """
     count = len(whole.steps)
-    if not 1 <= number <= count:
-        raise InputError(f"{whole.name}: expected the number of a step from 1 to {count}, got {number}")
+    if not isinstance(number, int) or not 1 <= number <= count:
+        raise InputError(f"{whole.name}: expected the number of a step from 1 to {count}, got {number!r}")
     step = whole.steps[number - 1]
     page = Page(whole.name, f"{whole.title}: step {number}", whole.source, first=number, file=whole.file)
     place = next(
