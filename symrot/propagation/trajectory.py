@@ -44,9 +44,9 @@ class Invariant(NamedTuple):
     values : array, shape (n,)
         Values of the quantity at the sample times.
     scale : float
-        The number by which the drift is divided, a largest magnitude along the trajectory: for an energy that of the
-        quantity or of the kinetic energy, whichever is larger; for a component of the angular momentum that of the
-        whole vector; for the spin that of the quantity. For the norm of the quaternion, and without samples, it is 1.
+        The number by which the drift is divided, a largest magnitude along the trajectory: of the spin; of an energy or
+        the kinetic energy, whichever is larger; of the whole vector for a component of the angular momentum. For the
+        norm of the quaternion, and without samples, the scale is 1.
     drift : float
         Largest change since the start, divided by ``scale`` unless that is 0.
 

@@ -213,7 +213,7 @@ def _drift(axes: Any, t: Floats, trajectory: Any) -> None:
 
 
 def _body_sphere(axes: Any, trajectory: Any) -> None:
-    """Draw on a sphere, in body axes, the path of the angular momentum; under torques, that of the rotation axis."""
+    """Draw on a sphere, in body axes, the path of the angular momentum or, under torques, of the rotation axis."""
     if any(kind != "rotor" for kind in trajectory.scene.torque_kinds):
         draw_directions(axes, trajectory.omega, ("1", "2", "3"))
         axes.set_title("Axis of rotation in the body")

@@ -84,7 +84,8 @@ def _components(output: Output) -> dict[str, tuple[str, int]]:
 def scene_for(scene: Scene, texts: Sequence[str]) -> Scene:
     """Return the scene with the Euler sequence in the outputs ``texts``: ZYX, in rad, for ``euler_ZYX_1@end``.
 
-    The scene is unchanged if the outputs have no sequence or that of the scene. Raise InputError for two sequences.
+    The scene is unchanged if the outputs have no sequence, or the sequence of the scene. Raise InputError for two
+    sequences, or for three letters that are no sequence.
     """
     from dataclasses import replace
 
@@ -256,7 +257,7 @@ def evaluate(outputs: Sequence[SweepOutput], ensemble: Any, times: Floats, sampl
     times : array, shape (m,)
         The sample times that the sweep asks for, s.
     samples : array
-        All times at which the ensemble was computed, s, ascending, from :func:`sample_times`: those in ``times``, and
+        All times at which the ensemble was computed, s, ascending, from :func:`sample_times`: the ``times``, and
         single times of outputs such as ``omega_1@2.5``.
     """
     places = np.searchsorted(samples, times) if np.isin(times, samples).all() else np.empty(0, dtype=np.intp)

@@ -103,7 +103,7 @@ def _of_part(part: Part, body: Body) -> Iterator[Patch]:
     values = {name: float(value) for name, value in scalars(shape, part.dimensions).items()}
     position = [parse(text) for text in shape.position]
     for fixed, free in _faces(shape):
-        grids = [_places(coordinate, values, position) for coordinate in free]
+        grids = [_places(coordinate, values) for coordinate in free]
         rows, columns = (grids[0], grids[1]) if len(grids) == 2 else ([None], grids[0])
         ends = {name: _value(text, values) for name, text in fixed.items()}
         if len(free) == 2 and _is_line(position, values | ends, dict(zip((c.name for c in free), grids, strict=True))):
@@ -159,7 +159,7 @@ def _is_line(position: Sequence[Node], values: Mapping[str, float], grids: Mappi
     return any(max(abs(a - b) for a, b in zip(middle, here, strict=True)) <= ROUNDING * size for middle in middles)
 
 
-def _places(coordinate: Coordinate, values: Mapping[str, float], position: Sequence[Node]) -> list[float]:
+def _places(coordinate: Coordinate, values: Mapping[str, float]) -> list[float]:
     """Return the values of a coordinate at which a surface is computed: both ends; for an angle also values between."""
     low, high = _value(coordinate.lower, values), _value(coordinate.upper, values)
     count = max(1, round(PER_HALF_TURN * (high - low) / pi)) if coordinate.angle else 1

@@ -73,7 +73,7 @@ def rounding_problem(
 def _check_unit(
     group: Sequence[str], kernel_problem: RoundingProblem, box: Mapping[str, tuple[Fraction, Fraction]]
 ) -> None:
-    """Raise InputError if the box contains no unit quaternion: a bound on such a box would say nothing."""
+    """Raise InputError if the box contains no unit quaternion: a bound on the box would hold for no input."""
     # ``group`` lists the four components of the quaternion, such as "q[1]"
     ends = [sorted(box[place], key=abs) for place in group]
     least = sum(near * near for (near, far) in ends if near * far > 0)
