@@ -97,7 +97,7 @@ def dense_part(
 
 
 def doubtful_holes(parts: Sequence[DensePart | None], names: Sequence[str]) -> tuple[str, ...]:
-    """Return a sentence for each hole of a body that can be proven neither to lie within its parts nor to reach out.
+    """Return a sentence for each hole of a body whose density could not be proven to be negative nowhere in the hole.
 
     Parameters
     ----------
@@ -196,7 +196,7 @@ def _carry(parts: Sequence[DensePart], holes: Sequence[DensePart]) -> bool:
     """Return whether the densities of ``parts`` certainly add up to at least the sum of the densities of ``holes``.
 
     All of them overlap; one per cent less is allowed (:data:`DENSITY`). A part whose density is a polynomial counts
-    only for a single hole with the same polynomial and position.
+    only for a single hole with the same density (:meth:`DensePart.has_density_of`).
     """
     filled = sum(part.density for part in parts if isinstance(part.density, Fraction))
     emptied = Fraction(0)
