@@ -1,4 +1,7 @@
-"""Every SymPy symbol of symrot, made once, with its assumptions and its unit (see :mod:`symrot.conventions`)."""
+"""The SymPy symbols of symrot's formulas, with assumptions and units (see :mod:`symrot.conventions`).
+
+Each symbol is made once, but for the constants of scenes, which :func:`constant` makes.
+"""
 
 from sympy import Symbol
 

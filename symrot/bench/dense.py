@@ -2,8 +2,8 @@
 
     python -m symrot.bench.dense [--samples 20000] [--rounds 15] [--motion NAME]
 
-heyoka runs by ``propagate_grid`` and by ``propagate_until`` with ``c_output``. Each run of heyoka is compared with
-symrot's fastest run whose error is not larger. Errors are those of the last sample.
+heyoka runs by ``propagate_grid`` and by ``propagate_until`` with ``c_output``. At each tolerance, the faster of the two
+is compared with symrot's fastest Taylor series whose error is not larger. Errors are those of the last sample.
 """
 
 import argparse

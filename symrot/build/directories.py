@@ -116,9 +116,12 @@ def _shared_group(group: int) -> bool:
 def user_directory() -> tuple[Path, str]:
     """Return the user's cache directory and the reason why it cannot be used; the reason is "" if it can be used.
 
-    If the directory does not exist, it is created.
+    If the directory does not exist, it is created; if others have access to it, this access is withdrawn.
     """
-    directory = _cache_directory() / CACHE_SUBDIR
+    try:
+        directory = _cache_directory() / CACHE_SUBDIR
+    except RuntimeError:
+        return Path(CACHE_SUBDIR), "the home directory is unknown; set SYMROT_CACHE to a directory"
     try:
         if not directory.is_dir():
             for place in (*reversed(directory.parents), directory):

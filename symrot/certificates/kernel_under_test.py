@@ -8,13 +8,14 @@ from collections.abc import Mapping, Sequence
 from functools import reduce
 from operator import add
 
+import sympy
 from sympy import Expr, Matrix, Rational, Symbol, zeros
 
 from symrot.certificates.certificate import KernelUnderTest
 from symrot.codegen.printing.banner import Description
 from symrot.dynamics.equations import Equations
 from symrot.formula.program import Program
-from symrot.formula.tree import Node, evaluate
+from symrot.formula.tree import FUNCTIONS, Node, evaluate
 from symrot.kernels.definition import Definition, Law
 from symrot.kernels.derivative import exact_derivative
 from symrot.kernels.jacobian import BY
@@ -24,6 +25,7 @@ from symrot.symbols import constant, omega_b
 
 __all__ = ["library_kernel_under_test", "scene_kernel_under_test", "scene_laws"]
 
+_FUNCTIONS = {name: sympy.Abs if name == "abs" else getattr(sympy, name) for name in FUNCTIONS}
 DOUBLE_AND_FLOAT, ONLY_DOUBLE = {"": "double", "f": "float"}, {"": "double"}
 
 
@@ -85,7 +87,7 @@ def scene_kernel_under_test(
 
 def _expression(node: Node) -> Expr:
     """Convert a formula from its syntax tree (``node``) to a SymPy expression in symbols of physical constants."""
-    return evaluate(node, _ConstantsByName(), number=lambda value: Rational(value.numerator, value.denominator))
+    return evaluate(node, _ConstantsByName(), _FUNCTIONS, lambda value: Rational(value.numerator, value.denominator))
 
 
 def _derivative_laws(equations: Equations, outputs: Sequence[str]) -> tuple[Law, ...]:

@@ -187,7 +187,7 @@ def rates_of(data: Data) -> Program:
             tuple((str(name), _folded(parse(formula))) for name, formula in section["temporaries"]),
             tuple((str(name), _folded(parse(formula))) for name, formula in section["formulas"]),
         )
-    except (InputError, KeyError, TypeError, ValueError, AttributeError) as reason:
+    except (InputError, KeyError, TypeError, ValueError, AttributeError, ZeroDivisionError) as reason:
         raise CertificateError(
             f"expected 'rates' in the certificate as symrot prints them, got other content ({reason})"
         ) from None

@@ -4,9 +4,11 @@ import re
 from collections.abc import Callable
 from dataclasses import replace
 from fractions import Fraction
+from itertools import pairwise
 from typing import Any
 
 from symrot.checker.claim.claims import Claim
+from symrot.checker.claim.notation import decimal
 from symrot.checker.claim.tree import Node, number, product, walk
 from symrot.checker.claim.values import decide_value
 from symrot.checker.rounding import rounded_value
@@ -20,14 +22,20 @@ __all__ = ["in_degrees", "with_units"]
 
 CIRCULAR = ("sin", "cos", "tan", "cot", "sec", "csc")
 DECIMAL, ROUNDED_WHOLE = r"\d+\.\d+(?:[eE][+-]?\d+)?", r"[1-9]\d*[1-9]"
-"""Patterns of a decimal number, and of a whole number that may have been rounded to ones, such as 37. A number that
-ends with 0 does not match: 40 may have been rounded to tens or to ones."""
+"""Patterns of a decimal number, and of a whole number of two or more digits that may have been rounded to ones, such as
+37. A number that ends with 0 does not match: 40 may have been rounded to tens or to ones."""
 
 LONG_WHOLE = 3
 """The smallest number of digits of a whole number that may be a rounded rational value, as in 1 hp = 746 W."""
 
 TURN = 7
 """A number of at least this size, such as 30 in ``sin(30)``, is probably an angle in degrees: 2 pi is 6.28."""
+
+TYPED_ANGLE = re.compile(
+    rf"\\?(?<![A-Za-z])(?:{'|'.join(CIRCULAR)})(?:\^(?:\d+|\{{\d+\}})|[²³])?\s*(?:\\left\s*)?[({{]?\s*"
+    r"(?P<number>\d+(?:\.\d+)?(?:[eE][+-]?\d+)?)(?![\w.°^])"
+)
+"""Pattern of a circular function in a text and the number at the beginning of its argument, as in ``sin(30)``."""
 
 
 def with_units(claim: Claim, measured: Measured, decide: Callable[[Claim], Verdict]) -> Verdict:
@@ -186,7 +194,7 @@ def in_degrees(claim: Claim, verdict: Verdict, decide: Callable[[Claim], Verdict
     if claim.relation is None:
         return verdict
     sign, left, right = claim.relation
-    angles = {n.args[0] for side in (left, right) for _, n in walk(side) if _is_large_angle(n)}
+    angles = [n.args[0] for side in (left, right) for _, n in walk(side) if _is_large_angle(n)]
     if not angles:
         return verdict
     changed = claim.with_relation((sign, _degrees(left), _degrees(right)), alternatives=())
@@ -194,17 +202,27 @@ def in_degrees(claim: Claim, verdict: Verdict, decide: Callable[[Claim], Verdict
         other = decide(changed)
     except InputError:
         return verdict
-    numbers = " and ".join(sorted(str(angle.value) for angle in angles))
+    numbers = " and ".join(sorted({decimal(angle.value) for angle in angles}))
     note = f"the angle {numbers} is in radians; in degrees, written {numbers}°, the claim is {other.verdict}"
     # false in radians and true in degrees: a diagnosis with a repair
     if verdict.verdict == "false" and other.verdict == "true":
-        source = claim.sources.get("claim", "")
-        degree = "^\\circ" if "\\" in source else "°"
-        pattern = "|".join(str(angle.value) for angle in angles)
-        repaired = re.sub(rf"(?<![\w.])({pattern})(?![\w.°])", lambda match: match[1] + degree, source)
         diagnosis = Diagnosis("degrees", f"the angle {numbers} is in degrees, but is read in radians")
-        return replace(verdict, diagnosis=diagnosis, repairs=(Repair(repaired, "degrees", 0.5),), notes=verdict.notes)
+        repairs = _with_degree_signs(claim.sources.get("claim", ""), len(angles))
+        return replace(verdict, diagnosis=diagnosis, repairs=repairs)
     return replace(verdict, notes=(*verdict.notes, note))
+
+
+def _with_degree_signs(source: str, count: int) -> tuple[Repair, ...]:
+    """Return (repair,): the text ``source`` with a degree sign after each large number in a circular function.
+
+    Return () unless there are ``count`` such numbers, as many as in the claim that was read from the text.
+    """
+    degree = "^\\circ" if "\\" in source else "°"
+    ends = [match.end() for match in TYPED_ANGLE.finditer(source) if float(match["number"]) >= TURN]
+    if len(ends) != count:
+        return ()
+    parts = [source[start:end] for start, end in pairwise((0, *ends, len(source)))]
+    return (Repair(degree.join(parts), "degrees", 0.5),)
 
 
 def _is_large_angle(node: Node) -> bool:

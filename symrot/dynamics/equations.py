@@ -121,7 +121,8 @@ def euler_equations(inertia: Any = symbols.principal, torque: Any = symbols.torq
     Raises
     ------
     InputError
-        If the inertia is not 3 moments or a symmetric 3x3 tensor, or if the torque does not have 3 components.
+        If the inertia is not 3 moments or a symmetric 3x3 tensor, if it has no inverse, or if the torque does not have
+        3 components.
 
     Notes
     -----
@@ -136,6 +137,8 @@ def euler_equations(inertia: Any = symbols.principal, torque: Any = symbols.torq
     tensor = diag(*entries) if len(entries) == 3 else entries
     if tensor.shape != (3, 3) or not tensor.is_symmetric():
         raise InputError(f"inertia: expected 3 principal moments or a symmetric 3x3 tensor in kg m^2, got {inertia}")
+    if tensor.det().expand() == 0:
+        raise InputError(f"inertia: expected an invertible tensor, without a principal moment of zero, got {inertia}")
     expected = "torque: expected 3 body components in N m"
     moment = zeros(3, 1) if torque is None else _read(torque, expected)
     if len(moment) != 3:

@@ -299,7 +299,7 @@ class Ensemble(MotionSamples):
 
         ``pair`` holds a function of all values, such as numpy.mean, and one that skips NaN, such as numpy.nanmean.
         """
-        if quantity in UNAVERAGED or quantity not in QUANTITIES:
+        if not isinstance(quantity, str) or quantity in UNAVERAGED or quantity not in QUANTITIES:
             names = ", ".join(name for name in QUANTITIES if name not in UNAVERAGED)
             raise InputError(f"quantity: expected one of {names}, got {number.show(quantity)}")
         if self.t.ndim != 1:

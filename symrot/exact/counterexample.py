@@ -13,6 +13,7 @@ from random import Random
 from typing import Any
 
 from sympy import Expr, Rational, Symbol, acos, asin, atan, atan2, cos, pi, preorder_traversal, sin
+from sympy.concrete.expr_with_limits import ExprWithLimits
 from sympy.core.function import AppliedUndef
 from sympy.polys.rings import PolyElement
 
@@ -256,10 +257,12 @@ def _nonzero(formula: Expr, values: dict[Expr, Expr]) -> bool:
 
 
 def _is_flat(formula: Expr, deep: int = MOST_NESTED) -> bool:
-    """Return whether functions are nested at most ``deep`` levels in a formula."""
-    # SymPy then substitutes numbers quickly
+    """Return whether a formula has no integral or sum, and functions nested at most ``deep`` levels."""
+    # SymPy then substitutes numbers quickly, and no variable of integration is replaced
     inside = deep - formula.is_Function
-    return inside >= 0 and all(_is_flat(part, inside) for part in formula.args if part.args)
+    if inside < 0 or isinstance(formula, ExprWithLimits):
+        return False
+    return all(_is_flat(part, inside) for part in formula.args if part.args)
 
 
 def _shortest(number: Expr) -> Expr:

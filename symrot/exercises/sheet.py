@@ -120,7 +120,7 @@ def exercise(topic: str | Sequence[str] = "", *, seed: int = 0, count: int = 1) 
     ----------
     topic : str or sequence of str
         A topic or the name of a template, see ``symrot exercise --list``, or several of them; an empty text means all
-        topics. The sheet is in the order of the topics.
+        topics. The sheet is in the order of the topics; with all topics, the seed decides which of them is the first.
     seed : int
         Seed of the random choices. Another seed usually gives other numbers and begins with another template; the same
         seed gives the same exercises on every machine.
@@ -186,7 +186,9 @@ def read_sheet(data: Any, where: str) -> ExerciseSheet:
         if data["schema"] != SCHEMA:
             raise InputError(f"{where}: expected exercises of schema {SCHEMA}, got {data['schema']!r}")
         return ExerciseSheet(tuple(Exercise.from_json(each) for each in data["exercises"]))
-    except (KeyError, TypeError, AttributeError) as fault:
+    except (KeyError, TypeError, ValueError, AttributeError) as fault:
+        if isinstance(fault, InputError):
+            raise
         raise InputError(
             f"{where}: expected the JSON that `symrot exercise --format json` writes, got other data ({fault})"
         ) from None

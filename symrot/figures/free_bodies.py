@@ -160,8 +160,10 @@ def momentum_sphere() -> Picture:
 
 
 def cone_vectors(moments: tuple[float, float], nutation: float) -> tuple[Floats, Floats, Floats]:
-    """Return the directions of L, omega and the symmetry axis of a free symmetric body, in space components."""
-    # nutation, rad: the angle from L to the symmetry axis
+    """Return the directions of L, omega and the symmetry axis of a free symmetric body, in space components.
+
+    ``moments`` are those across and along the axis, kg m^2; ``nutation`` is the angle from L to the axis, rad.
+    """
     a, c = moments
     momentum = np.array([np.sin(nutation), 0.0, np.cos(nutation)])  # in the body, |L| = 1
     start = momentum / np.array([a, a, c])

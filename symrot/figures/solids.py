@@ -29,7 +29,7 @@ SPECIAL: dict[str, dict[str, Any]] = {
 VIEW = View(azimuth=32, elevation=28, scale=72)
 FINE = {True: 49, False: 2}  # samples of a coordinate: an angle, or a length or share, in which a map is linear
 AHEAD = 0.012  # m: a triangle hides a point only if it lies farther than this in front of it
-ONCE_AROUND = 6.0
+ONCE_AROUND = 6.0  # a coordinate with a larger range is an angle that goes once around, without ends
 
 
 @dataclass(frozen=True)

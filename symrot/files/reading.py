@@ -28,6 +28,8 @@ def refuse_special(path: Path) -> os.stat_result:
     OSError
         If the path is a folder, pipe, socket or device, or if the file does not exist. The attribute ``strerror``
         completes a message "expected .., got ..".
+    ValueError
+        If the name of the file contains a NUL character.
     """
     status = path.stat()
     _refuse_mode(status.st_mode)

@@ -12,7 +12,7 @@ from itertools import pairwise, product
 from typing import Any, NamedTuple
 
 from symrot.errors import InputError
-from symrot.formula.tree import Node, evaluate
+from symrot.formula.tree import Node, evaluate, names
 from symrot.inertia import hulls
 from symrot.inertia.containment import are_apart, excess, is_convex, outside
 from symrot.inertia.cutting import cut
@@ -60,8 +60,19 @@ class DensePart(NamedTuple):
         if isinstance(self.density, Fraction):
             return float(self.density)
         x, y, z = self.solid.pose.from_body(point)
-        names = {name: float(value) for name, value in scalars(SHAPES[self.solid.shape], self.exact_dimensions).items()}
-        return float(evaluate(self.density, {"pi": math.pi, **names, "x": x, "y": y, "z": z}, None, float))
+        numbers = {name: float(value) for name, value in self._scalars.items()}
+        return float(evaluate(self.density, {"pi": math.pi, **numbers, "x": x, "y": y, "z": z}, None, float))
+
+    def has_density_of(self, other: "DensePart") -> bool:
+        """Return whether both parts have the same formula of density, with the same numbers, in the same axes."""
+        if isinstance(self.density, Fraction) or (self.density, self.solid.pose) != (other.density, other.solid.pose):
+            return False
+        mine, others = self._scalars, other._scalars
+        return all(mine.get(name) == others.get(name) for name in names(self.density))
+
+    @property
+    def _scalars(self) -> dict[str, Any]:
+        return scalars(SHAPES[self.solid.shape], self.exact_dimensions)
 
 
 def pose(at: Sequence[Any], rotation: Sequence[Sequence[Any]]) -> hulls.Pose:
@@ -86,7 +97,7 @@ def dense_part(
 
 
 def doubtful_holes(parts: Sequence[DensePart | None], names: Sequence[str]) -> tuple[str, ...]:
-    """Return a sentence for each hole of a body that can be proven neither to lie within its parts nor to reach out.
+    """Return a sentence for each hole of a body whose density could not be proven to be negative nowhere in the hole.
 
     Parameters
     ----------
@@ -185,14 +196,13 @@ def _carry(parts: Sequence[DensePart], holes: Sequence[DensePart]) -> bool:
     """Return whether the densities of ``parts`` certainly add up to at least the sum of the densities of ``holes``.
 
     All of them overlap; one per cent less is allowed (:data:`DENSITY`). A part whose density is a polynomial counts
-    only for a single hole with the same polynomial and position.
+    only for a single hole with the same density (:meth:`DensePart.has_density_of`).
     """
     filled = sum(part.density for part in parts if isinstance(part.density, Fraction))
     emptied = Fraction(0)
     for hole in holes:
         if not isinstance(hole.density, Fraction):  # a polynomial is compared with the same polynomial alone
-            same = [part for part in parts if (part.density, part.solid.pose) == (hole.density, hole.solid.pose)]
-            return len(holes) == 1 and bool(same)
+            return len(holes) == 1 and any(part.has_density_of(hole) for part in parts)
         emptied += hole.density
     return float(emptied) <= float(filled) * (1 + DENSITY)
 

@@ -179,7 +179,8 @@ def density_polynomial(density: Node, values: Mapping[str, Polynomial], source: 
     Raises
     ------
     InputError
-        If the density is no polynomial in x, y, z, has a degree above LARGEST_DEGREE, or uses an unknown name.
+        If the density is no polynomial in x, y, z, has a degree above LARGEST_DEGREE or too many operations, or uses an
+        unknown name.
     """
     expected = f"{prefix(where)}expected a density that is a polynomial in x, y, z, got {show(source)}"
     try:
@@ -193,6 +194,8 @@ def density_polynomial(density: Node, values: Mapping[str, Polynomial], source: 
         if isinstance(reason, InputError):
             raise
         raise InputError(f"{expected} ({reason})") from None
+    except RecursionError:
+        raise InputError(f"{expected} (it has too many operations)") from None
     assert isinstance(polynomial, Polynomial)
     return polynomial
 
@@ -225,12 +228,17 @@ def moments_per_measure(region: Domain, density: Polynomial | None = None) -> tu
 
 
 def require_not_negative(density: Node, points: Iterable[Mapping[str, float]], source: object, where: str = "") -> None:
-    """Raise InputError if a density is negative at one of some points of a body.
+    """Raise InputError if a density at one of some points of a body is negative or exceeds the range of a double.
 
     A point is a mapping of x, y, z (m) and of other names in the density to numbers; ``source`` is the density as the
     user wrote it, for the message.
     """
-    values = [(float(evaluate(density, {"pi": math.pi, **point}, None, float)), point) for point in points]
+    try:
+        values = [(float(evaluate(density, {"pi": math.pi, **point}, None, float)), point) for point in points]
+    except OverflowError:
+        raise InputError(
+            f"{prefix(where)}density: expected a density with values within the range of a double, got {show(source)}"
+        ) from None
     least, place = min(values, key=lambda each: each[0])
     # a density that is zero at a point may be negative there by rounding errors
     if least < -1e-9 * max(abs(value) for value, _ in values):

@@ -113,7 +113,7 @@ class Solid:
 
     @property
     def volume(self) -> Expr:
-        """The measure of the body: the volume of a solid, the area of a surface, or the length of a curve."""
+        """The measure of the body: volume of a solid, area of a surface, length of a curve, number of point masses."""
         return self.measure
 
     @cached_property
@@ -248,13 +248,18 @@ def _scalar(value: Any) -> Expr:
 
 
 def _formula(text: str, known: Mapping[str, Expr]) -> Expr:
-    """Return the formula ``text`` as an expression, with the values of ``known`` in place of its names."""
+    """Return the formula ``text`` as an expression, with the values of ``known`` in place of its names.
+
+    Raise InputError if it has another name or too many operations.
+    """
     values = {**known, **_CONSTANTS}
     try:
         return sympify(evaluate(parse(text), values, _FUNCTIONS, _rational))
     except KeyError as unknown:
         expected = ", ".join(sorted(values))
         raise InputError(f"expected a formula in {expected}, got {unknown.args[0]!r} in {show(text)}") from None
+    except RecursionError:
+        raise InputError(f"expected a formula of fewer operations, got {show(text)}") from None
 
 
 def _rational(value: Fraction) -> Rational:

@@ -39,7 +39,8 @@ def unwrap_euler(angles: Any, sequence: str, locked: Any = None) -> Array:
         The Euler sequence of the angles, such as ``"ZXZ"``.
     locked : bool array, shape (n, ...), optional
         Whether each sample is in gimbal lock, as returned together with the angles. Such a sample gets the third angle
-        of the last sample that is not locked, and the first angle that gives the same attitude.
+        of the last sample before it that is not locked (or else of the first sample), and the first angle that gives
+        the same attitude.
 
     Notes
     -----
@@ -75,7 +76,10 @@ def _step(before: Array, after: Array) -> Array:
 
 
 def _take_over(angles: Array, locked: Any, sequence: str) -> None:
-    """Give each locked sample, in place, the third angle of the last unlocked sample, and adjust its first angle."""
+    """Give each locked sample, in place, the third angle of the last unlocked sample, and adjust its first angle.
+
+    Locked samples before any unlocked one get the third angle of the first sample.
+    """
     if not locked.any():
         return
     (first, _, last), _, _, sign = sequence_axes(sequence)

@@ -50,9 +50,10 @@ def _lengths(body: Solid) -> list[tuple[str, object]]:
 
 
 def dossier(singularities: SingularityDossier) -> str:
-    """Return Markdown about an Euler sequence: the matrix B, its determinant, and the axis lost at gimbal lock.
+    """Return Markdown about an Euler sequence: the matrix B, its determinant, and what happens at gimbal lock.
 
-    B maps the rates of the Euler angles to the angular velocity in body components.
+    B maps the rates of the Euler angles to the angular velocity in body components. At gimbal lock no rates rotate the
+    body about a certain axis; the text names this axis, and the sequences that are regular there.
     """
     parts = [
         f"**Singularities of {singularities.sequence}**",

@@ -17,7 +17,7 @@ PARTS_OF_SAMPLE = (5, 50, 95)
 
 
 def scene(one: Scene) -> str:
-    """Return the initial state, body, torques and time span of a scene, and the text of its file if known, as HTML."""
+    """Return the data of a scene as HTML: body, initial state, torques, time span, output; its file's text if known."""
     moments = ", ".join(map(number_text, one.body.principal.moments))
     rows = [
         ("body", f"{one.body.description}, principal moments {moments} kg m²"),

@@ -192,10 +192,10 @@ def _with_values(
 
 
 def _longest_step(max_step: float) -> float:
-    longest = float(real_array(max_step, "max_step", "a positive number of seconds"))
-    if not longest > 0.0:
+    longest = real_array(max_step, "max_step", "a positive number of seconds")
+    if longest.shape or not longest > 0.0:
         raise InputError(f"max_step: expected a positive number of seconds, got {number.show(max_step)}")
-    return longest
+    return float(longest)
 
 
 def propagate(

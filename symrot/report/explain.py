@@ -37,7 +37,7 @@ def _row(item: str, skipped: bool, why: str, derivation: str = "", operations: C
 def _ladder(plan: Plan) -> "list[PlanRow]":
     """Return rows of the table of `symrot explain` that count the operations of the equations of motion.
 
-    The first row counts those of the most general equations. Each further row is about a rule that may shorten the
+    The first row counts the operations of the most general equations. Each further row is about a rule that may shorten
     equations for this scene, such as equal moments, with the number of operations that the rule saves.
     """
     from symrot.planning.general_structure import general_structure

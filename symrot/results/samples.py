@@ -101,8 +101,8 @@ class Samples(ABC):
         Parameters
         ----------
         quantities : sequence of str, optional
-            Names among ``output.quantities`` of a scene, such as ``["omega", "energy"]``; default: those of the scene
-            and any derivatives.
+            Names that ``output.quantities`` of a scene may have, such as ``["omega", "energy"]``, and of derivatives,
+            such as ``"omega_by_weight"``; default: the output quantities of the scene and any derivatives.
 
         Returns
         -------
@@ -172,15 +172,21 @@ class MotionSamples(Samples):
         return self._evaluate("energy")[..., 0]
 
     @property
-    def axis_number(self) -> int:
-        """Index, from 0, of the body axis of :attr:`axis`: the symmetry axis, or 2 if no body axis is one."""
+    def axis_number(self) -> int | None:
+        """Index, from 0, of the body axis that is :attr:`axis`; None if the symmetry axis is not a body axis."""
         principal = self.scene.body.principal
-        return 2 if principal.symmetry_axis is None or not principal.given_axes else int(principal.symmetry_axis)
+        if principal.symmetry_axis is None:
+            return 2
+        return principal.symmetry_axis if principal.given_axes else None
 
     @cached_property
     def axis(self) -> Floats:
-        """Direction of the body axis number :attr:`axis_number`, space components, shape (..., 3)."""
-        return conversions.quaternion_to_axis(self.quaternion, self.axis_number)
+        """Direction of the symmetry axis, or without one of the third body axis, space components, shape (..., 3)."""
+        if self.axis_number is not None:
+            return conversions.quaternion_to_axis(self.quaternion, self.axis_number)
+        principal = self.scene.body.principal
+        axes_b = np.array(principal.axes, dtype=np.float64)
+        return self._to_space(axes_b[:, principal.symmetry_axis])
 
     def _labelled(self, quantities: Sequence[str] | None = None) -> list[Labelled]:
         """Return the time and the quantities ``quantities`` with their labels, for tables.
@@ -203,7 +209,7 @@ class MotionSamples(Samples):
                     'euler: expected an Euler sequence, such as "ZXZ", as output.sequence of the scene, got none'
                 )
             return self.euler(output.sequence, degrees=output.degrees)
-        if name not in QUANTITIES:
+        if not isinstance(name, str) or name not in QUANTITIES:
             message = f"quantity: expected one of {', '.join(QUANTITIES)}, got {show(name)}"
             raise InputError(with_hint(message, name, QUANTITIES))
         value: Floats = getattr(self, name)

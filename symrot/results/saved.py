@@ -32,8 +32,8 @@ _CONTENT_FAULTS = (ValueError, LookupError, TypeError, AttributeError)  # as of 
 class SavedTrajectory(Samples):
     """The samples of a trajectory from a file; :func:`symrot.load` returns it. Conventions: :mod:`symrot.conventions`.
 
-    The quantities in the file are attributes, such as ``energy``; only the Euler angles in it are read by
-    ``quantity("euler")``, since :meth:`euler` computes those of any sequence.
+    The quantities in the file are attributes, such as ``energy``. Only the Euler angles in the file are read by
+    ``quantity("euler")``, since the method :meth:`euler` computes the angles of any sequence.
 
     Attributes
     ----------
@@ -78,7 +78,7 @@ class SavedTrajectory(Samples):
 
     def quantity(self, name: str) -> Floats:
         """Return a quantity in the file by its name in ``output.quantities`` of a scene, such as ``"euler"``."""
-        if name not in self._items:
+        if not isinstance(name, str) or name not in self._items:
             raise InputError(f"{name}: expected a file with this quantity, got a file with {', '.join(self._items)}")
         values: Floats = self._items[name].values
         return values
@@ -184,6 +184,7 @@ def _saved(content: Any) -> SavedTrajectory:
     saved = SavedTrajectory(metadata, _items(content, metadata, str))
     if not isinstance(saved.metadata["status"], int) or None in saved._about:
         raise ValueError("its metadata are damaged")
+    saved.sensitivities  # noqa: B018 - a damaged record of derivatives is refused here
     for number, event in enumerate(metadata["events"], start=1):
         items = _items(content, metadata, lambda name, k=number: event_array(k, name))
         states = SavedTrajectory(metadata, [*items, *_time_items(metadata.get("sensitivities"), number)])

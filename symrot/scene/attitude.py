@@ -31,7 +31,7 @@ class Attitude(NamedTuple):
     """An attitude in a scene, as a unit quaternion (scalar first, body to space) and as the matrix ``dcm_sb``.
 
     The matrix is exact if the sines and cosines of the angles in the scene, and the length of an axis, are rational.
-    A matrix given in a scene is replaced by that of its quaternion.
+    A matrix given in a scene is replaced by the exact matrix of its quaternion.
     """
 
     quaternion: Quaternion

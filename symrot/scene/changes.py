@@ -244,8 +244,8 @@ def _set(scene: SceneContent, key: str, value: Any) -> None:
 def _place(scene: SceneContent, key: str) -> Place:
     """Return the place in the scene's content of the value that ``key`` names, such as ``omega_2`` or ``body.mass``.
 
-    The name of a constant that several torques have means that of the first one. InputError is raised for an unknown
-    name, or for one that a torque and the body share; a path is not checked beyond its first key.
+    If several torques have a constant of this name, the constant of the first one is meant. InputError is raised for an
+    unknown name, or for a name that a torque and the body share; a path is not checked beyond its first key.
     """
     if not isinstance(key, str):
         raise InputError(f"expected the name of a value of the scene, such as 'body.mass', got {show(key)}")

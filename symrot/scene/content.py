@@ -76,7 +76,7 @@ def toml_text(content: Content) -> str:
 def _write_table(content: Content, name: str, lines: list[str]) -> None:
     """Append the TOML lines of a table to ``lines``: first its values, then its tables and lists of tables."""
     # name is the dotted name in the header [name]; empty for the whole file
-    later = [key for key, value in content.items() if _is_section(key, value, name)]
+    later = [key for key, value in content.items() if _is_section(value, name)]
     lines += [f"{_key(key)} = {_value(value)}" for key, value in content.items() if key not in later]
     for key in later:
         path = f"{name}.{_key(key)}" if name else _key(key)
@@ -86,7 +86,7 @@ def _write_table(content: Content, name: str, lines: list[str]) -> None:
             _write_table(item, path, lines)
 
 
-def _is_section(key: str, value: Any, name: str) -> bool:
+def _is_section(value: Any, name: str) -> bool:
     """Return whether a value has its own TOML header: ``[body]`` for a table, ``[[torque]]`` for a list of tables."""
     if isinstance(value, list):
         return bool(value) and all(isinstance(item, dict) for item in value)

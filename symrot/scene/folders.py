@@ -1,4 +1,4 @@
-"""The folders from which a scene may read files: its own and those that the user allows. Standard library only."""
+"""The folders from which a scene may read files: its own, and others that the user allows. Standard library only."""
 
 from collections.abc import Sequence
 from pathlib import Path

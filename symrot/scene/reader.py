@@ -21,7 +21,6 @@ __all__ = [
     "flag",
     "items",
     "key_path",
-    "nearest",
     "number",
     "read_table",
     "text",

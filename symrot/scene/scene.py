@@ -83,7 +83,7 @@ class Scene:
 
     @property
     def torque_kinds(self) -> tuple[str, ...]:
-        """The kinds of all torques, such as ``("gravity", "damping")``; that of a torque given by samples is last."""
+        """The kinds of all torques, such as ``("gravity", "table")``; the kind of a torque given by samples is last."""
         table = () if self.table is None else (self.table.kind,)
         return (*(torque.kind for torque in self.torques), *table)
 

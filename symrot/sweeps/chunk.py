@@ -114,7 +114,11 @@ def _inputs(job: Job, draws: Draws, messages: dict[int, str]) -> tuple[_Inputs, 
 
 
 def _read_scenes(job: Job, draws: Draws, paths: dict[Path, int], inputs: _Inputs, messages: dict[int, str]) -> Rows:
-    """Read the scene with the varied values of each row, and return the rows that give a valid scene."""
+    """Read the scene with the varied values of each row, and return the rows that give a valid scene.
+
+    The numbers that follow from the values are written into ``inputs``, the reason for each other row into
+    ``messages``.
+    """
     assert job.content is not None
     # paths: the place of each varied number in the scene file, with its column in the draws
     constants = sorted({name for path in paths for name in constants_of(path, job.scene, job.content)})
@@ -175,7 +179,7 @@ def _reader(job: Job, paths: tuple[Path, ...], constants: tuple[str, ...]) -> An
 
 
 def _possible(scene: Scene, inputs: _Inputs, rows: Rows, messages: dict[int, str]) -> Rows:
-    """Return those of ``rows`` whose values the ensemble accepts; the reasons for others go into ``messages``."""
+    """Return those of ``rows`` whose values an ensemble accepts; the reasons for the others go into ``messages``."""
     if not len(rows):
         return rows
     try:
@@ -199,7 +203,11 @@ def _propagate(
     job: Job, inputs: _Inputs, rows: Rows, samples: Floats, outputs: dict[str, Floats], status: NDArray[np.int8],
     messages: dict[int, str],
 ) -> None:  # fmt: skip
-    """Propagate ``rows``, which share their equations, and write the results into ``outputs`` and ``status``."""
+    """Propagate ``rows``, which share their equations, and write ``outputs``, ``status`` and ``messages``.
+
+    If the propagation raises an error, the rows are halved, down to single rows; a row that fails alone is left as it
+    is, but for its message.
+    """
     try:
         ensemble = propagate_ensemble(
             job.scene, **inputs.of(rows), t=samples, method=job.method, tolerance=job.tolerance,

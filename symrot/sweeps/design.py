@@ -103,7 +103,7 @@ def read_design(
     Parameters
     ----------
     scene, content
-        The scene, and the content of its file or None.
+        The scene, and the content of its file, or None if it is not known.
     vary : mapping
         For each value that varies, its name and its law, see :func:`symrot.sweeps.laws.read_law`.
     attitudes : str

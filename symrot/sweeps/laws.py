@@ -95,7 +95,8 @@ def read_law(law: object, where: str) -> Law:
     ----------
     law : str, or sequence of numbers
         ``normal(mean, deviation)``, ``uniform(low, high)``, ``loguniform(low, high)``, ``linspace(first, last,
-        count)``, ``geomspace(first, last, count)``, ``values(a, b, ...)``, or the values of a grid as a sequence.
+        count)``, ``geomspace(first, last, count)``, ``values(a, b, ...)``, or the values of a grid as a sequence. A law
+        is returned unchanged.
     where : str
         Name of the value that varies, for error messages.
 

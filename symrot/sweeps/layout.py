@@ -31,8 +31,10 @@ LABELS = {
 }
 """Name of an array -> its attributes, for the arrays of status and message, which have one entry per trajectory."""
 
-ROWS = (1024, 16384)  # least and largest number of trajectories in a chunk
-CHUNKS = 16  # chunks of a small sweep, so that several processes share the work
+# by default, a sweep has about CHUNKS chunks, so that several processes share the work, if this gives chunks of ROWS
+# trajectories (least, largest number); many samples for each trajectory make chunks smaller
+ROWS = (1024, 16384)
+CHUNKS = 16
 LARGEST_CHUNK = 4_000_000  # samples in a chunk, about 300 MB with all quantities that are computed on the way
 
 
@@ -211,7 +213,7 @@ def arrays_of(chunk: Chunk, names: tuple[str, ...]) -> dict[str, NDArray[Any]]:
 
 
 def messages_of(chunk: Chunk) -> NDArray[Any]:
-    """Return the messages of a chunk, one text for each trajectory; the text of a complete one is empty."""
+    """Return the messages of a chunk, one text for each trajectory; empty for a complete one without a warning."""
     texts = np.full(chunk.stop - chunk.start, "", dtype=object)
     for row, message in chunk.messages.items():
         texts[row] = message

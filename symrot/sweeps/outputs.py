@@ -40,7 +40,8 @@ UNAVERAGED = {
     "euler": "angles jump by 360 degrees, and the mean of 179 and -179 degrees is not 0",
     "quaternion": "q and -q are one attitude",
 }
-"""Quantity -> why its components have no mean and no percentiles."""
+"""Quantity -> why its components have no mean and no percentiles over trajectories; angles have no mean over time too.
+"""
 
 REDUCTIONS: dict[str, tuple[str, Callable[[Floats], Floats]]] = {
     "min": ("smallest value among the samples", lambda values: values.min(axis=1)),
@@ -81,11 +82,15 @@ def _components(output: Output) -> dict[str, tuple[str, int]]:
 
 
 def scene_for(scene: Scene, texts: Sequence[str]) -> Scene:
-    """Return the scene with the Euler sequence in the outputs ``texts``, if any: ZYX for ``euler_ZYX_1@end``."""
+    """Return the scene with the Euler sequence in the outputs ``texts``: ZYX, in rad, for ``euler_ZYX_1@end``.
+
+    The scene is unchanged if the outputs have no sequence, or the sequence of the scene. Raise InputError for two
+    sequences, or for three letters that are no sequence.
+    """
     from dataclasses import replace
 
     sequences = []
-    for text in texts:
+    for text in (text for text in texts if isinstance(text, str)):  # others are refused when they are read
         word, _, rest = text.partition("@")[0].strip().partition("_")
         sequence = rest.partition("_")[0]
         if word == "euler" and len(sequence) == 3 and sequence not in sequences:
@@ -115,7 +120,8 @@ def read_outputs(texts: Sequence[str], scene: Scene, times: Floats) -> tuple[Swe
     Raises
     ------
     InputError
-        If a name or a reduction is unknown, or if an output occurs twice.
+        If a name or a reduction is unknown, a time is outside the sample times, an output occurs twice, or there is
+        none.
     """
     outputs = [output for text in texts for output in _read(text, scene, times)]
     names = [output.name for output in outputs]
@@ -251,7 +257,7 @@ def evaluate(outputs: Sequence[SweepOutput], ensemble: Any, times: Floats, sampl
     times : array, shape (m,)
         The sample times that the sweep asks for, s.
     samples : array
-        All times at which the ensemble was computed, s, ascending, from :func:`sample_times`: those in ``times``, and
+        All times at which the ensemble was computed, s, ascending, from :func:`sample_times`: the ``times``, and
         single times of outputs such as ``omega_1@2.5``.
     """
     places = np.searchsorted(samples, times) if np.isin(times, samples).all() else np.empty(0, dtype=np.intp)

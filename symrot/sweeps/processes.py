@@ -28,7 +28,7 @@ __all__ = ["compute_packed", "cores", "packed", "run_here"]
 
 Range = tuple[int, int]
 IN_FLIGHT = 2  # chunks for each process: one to compute and one to begin with at once
-MOST_LOSSES = 5  # times that processes may end one after the other without a chunk in between
+MOST_LOSSES = 5  # a sweep stops if processes are killed so many times without a complete chunk in between
 
 
 def cores() -> int:
@@ -64,7 +64,7 @@ def compute_packed(text: bytes, start: int, stop: int, draws: Draws | None = Non
 def run_here(job: Job, ranges: Sequence[Range], workers: int) -> Iterator[Chunk]:
     """Yield the chunks of a job, as each is complete, computed by ``workers`` processes.
 
-    ``ranges`` has the pair (start, stop) of each chunk.
+    ``ranges`` has the pair (start, stop) of each chunk. With a single worker or chunk, this process computes.
 
     Raises
     ------
@@ -73,7 +73,6 @@ def run_here(job: Job, ranges: Sequence[Range], workers: int) -> Iterator[Chunk]
     """
     workers = min(workers, len(ranges))
     if workers <= 1:
-        # one worker: this process, in order
         yield from (compute(job, *each) for each in ranges)
         return
     context = multiprocessing.get_context("spawn")  # after a fork, other threads of the parent would leave locks behind
@@ -139,7 +138,7 @@ def _end_with(sentinel: int) -> None:
 
 
 def _stop(pool: Any) -> None:
-    """End the processes of ``pool`` at once, after Ctrl-C or an error; chunks that they are computing are lost."""
+    """End the processes of ``pool`` at once; chunks that they are computing, after Ctrl-C or an error, are lost."""
     processes = list((pool._processes or {}).values())
     pool.shutdown(wait=False, cancel_futures=True)
     for process in processes:

@@ -84,6 +84,7 @@ def statistics_of(
 ) -> list[Table]:
     """Return statistics of ``variables`` (outputs) as arrays, over all trajectories that have a value.
 
+    The number of these trajectories is added for each output, and an array with the percentages of percentiles.
     ``store`` must have all chunks; ``progress`` is called with a text for each output.
     """
     tables = []

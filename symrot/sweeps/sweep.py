@@ -158,7 +158,8 @@ def sweep(
 ) -> Sweep:
     """Propagate many motions of a scene with varied values, and store chosen outputs of each motion.
 
-    The results have the same bits for any number of workers; the same call continues an interrupted sweep.
+    The results have the same bits for any number of workers. The same call with a ``path`` continues an interrupted
+    sweep.
 
     Parameters
     ----------
@@ -179,7 +180,8 @@ def sweep(
         Number of trajectories, a multiple of the number of grid points. It is needed if values are drawn; otherwise it
         is the number of grid points.
     seed : int
-        Seed of the draws. The draws of a trajectory depend only on the seed and on its index.
+        Seed of the draws. The draws of a trajectory do not depend on workers and chunks, nor on ``count`` unless the
+        sampling is ``"latin"``.
     outputs : str or sequence of str
         Quantities or components, such as ``"energy"`` at all sample times, ``"omega_1@end"``, ``"axis_z@2.5"`` (at
         2.5 s), ``"omega_3@max"``; also ``@start``, ``@min`` and ``@mean``.
@@ -234,7 +236,7 @@ def sweep(
     >>> result.array("omega_3@end").round(6).tolist()
     [200.0, 200.0, 200.0]
     """
-    chosen = read_statistics([statistics] if isinstance(statistics, str) else statistics)
+    chosen = read_statistics(_texts(statistics, "statistics"))
     _require(keep in KEEP, "keep", f"one of {', '.join(KEEP)}", keep)
     _require(keep == "all" or bool(chosen), "keep", "statistics to compute, with keep = 'statistics'", statistics)
     target = None if path is None else _target(path, keep)
@@ -246,7 +248,7 @@ def sweep(
     if chunk is not None:
         _whole(chunk, "chunk", 10_000_000)
     folders = [table_folders] if isinstance(table_folders, str | Path) else list(table_folders)
-    texts = [outputs] if isinstance(outputs, str) else list(outputs)
+    texts = _texts(outputs, "outputs")
     job = _job(scene, vary or {}, attitudes, sampling, count, seed, texts, t, method, tolerance, folders)
     _require_averages(chosen, job.outputs)
     header = header_of(job, chunk)
@@ -272,6 +274,13 @@ def sweep(
         tables = statistics_of(store, chosen, outputs_of_store, note) if chosen else []
         store.finish(tables, only_statistics)
     return _result(store, target, job.scene.warnings)
+
+
+def _texts(value: str | Sequence[str], where: str) -> list[str]:
+    try:
+        return [value] if isinstance(value, str) else list(value)
+    except TypeError:
+        raise InputError(f"{where}: expected a text or a list of texts, got {show(value)}") from None
 
 
 def _require_averages(statistics: Sequence[Statistic], outputs: Sequence[SweepOutput]) -> None:
@@ -323,13 +332,16 @@ def _whole(value: object, where: str, most: int) -> None:
 
 
 def _target(path: str | Path, keep: str) -> Path:
-    """Return the path of the file to write; raise InputError for an unknown ending or a missing folder."""
+    """Return the path of the file to write.
+
+    Raise InputError for an unknown ending, a missing folder, or a Parquet file with ``keep`` = ``"statistics"``: values
+    cannot be removed from it.
+    """
     target = Path(path)
     if target.suffix.lower() not in STORES:
         raise InputError(f"-o: expected a name that ends in {', '.join(STORES)}, got {str(path)!r}")
     if not target.parent.is_dir():
         raise InputError(f"-o: expected a name in an existing folder, got {str(path)!r}")
-    # values cannot be removed from a Parquet file
     if target.suffix.lower() != ".zarr" and keep == "statistics":
         raise InputError(
             f"-o: expected a name that ends in .zarr for keep = statistics, which stores no values of single motions, "
@@ -394,7 +406,7 @@ def _require_derivatives(scene: Scene, content: Content | None, design: Design, 
 
 
 def _content(scene: Scene) -> Content | None:
-    """Return the content of the file or dict from which a scene was read; None if the scene was changed later."""
+    """Return the content of a scene's file or dict; None if the scene's body or torques were replaced later."""
     try:
         return scene.to_dict()
     except InputError:  # only values of its constants can vary

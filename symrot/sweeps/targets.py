@@ -47,13 +47,15 @@ def read_target(name: str, scene: Scene, content: Content | None) -> Target:
     scene : Scene
         The scene.
     content : mapping or None
-        The content of the scene file; None if the scene was not read from a file or a dict.
+        The content of the scene file or dict; None if it is not known.
 
     Raises
     ------
     InputError
         If the scene has no quantity with this name, or if this quantity cannot vary.
     """
+    if not isinstance(name, str):
+        raise InputError(f"vary: expected the name of a value, such as 'omega_1', got {show(name)}")
     if name in OMEGA:
         return Target(name, "rad/s")
     places = constant_places(scene)
@@ -128,7 +130,10 @@ def _refuse(name: str, content: Content) -> NoReturn:
 
 
 def _numbers_in(content: Content) -> list[str]:
-    """Return the paths, as texts, of all numbers in a scene file that a sweep can vary, for hints in error messages."""
+    """Return the paths, as texts, of the numbers in VARIED_TABLES of a scene, for hints in error messages.
+
+    Numbers that the scene gives as text, such as ``"1/3"``, are left out.
+    """
 
     def walk(value: Any, place: str) -> list[str]:
         if isinstance(value, Mapping):

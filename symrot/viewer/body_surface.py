@@ -56,7 +56,7 @@ def patches(body: Body) -> list[Patch]:
     Parameters
     ----------
     body : Body
-        A body of parts, or one of which only the inertia is known.
+        A body of parts, one given by a mesh, or one of which only the inertia is known, which becomes a box.
 
     Returns
     -------
@@ -103,7 +103,7 @@ def _of_part(part: Part, body: Body) -> Iterator[Patch]:
     values = {name: float(value) for name, value in scalars(shape, part.dimensions).items()}
     position = [parse(text) for text in shape.position]
     for fixed, free in _faces(shape):
-        grids = [_places(coordinate, values, position) for coordinate in free]
+        grids = [_places(coordinate, values) for coordinate in free]
         rows, columns = (grids[0], grids[1]) if len(grids) == 2 else ([None], grids[0])
         ends = {name: _value(text, values) for name, text in fixed.items()}
         if len(free) == 2 and _is_line(position, values | ends, dict(zip((c.name for c in free), grids, strict=True))):
@@ -128,12 +128,12 @@ def _moved(rotation: Sequence[Sequence[Fraction]], point: Sequence[float], offse
 
 
 def _faces(shape: Shape) -> Iterator[tuple[dict[str, str], tuple[Coordinate, ...]]]:
-    """Yield for each face of a shape the coordinate that is constant on it, with its value, and the other
-    coordinates.
+    """Yield for each face of a shape a map from the coordinate that is constant on it to its value, and the others.
+
+    The ends of an angle from 0 to 2 pi are no faces. A shape with fewer than three coordinates is a face itself.
     """
     coordinates = shape.coordinates
     if len(coordinates) < 3:
-        # a shape with fewer than three coordinates is a surface itself
         yield {}, coordinates
         return
     for coordinate in coordinates:
@@ -159,7 +159,7 @@ def _is_line(position: Sequence[Node], values: Mapping[str, float], grids: Mappi
     return any(max(abs(a - b) for a, b in zip(middle, here, strict=True)) <= ROUNDING * size for middle in middles)
 
 
-def _places(coordinate: Coordinate, values: Mapping[str, float], position: Sequence[Node]) -> list[float]:
+def _places(coordinate: Coordinate, values: Mapping[str, float]) -> list[float]:
     """Return the values of a coordinate at which a surface is computed: both ends; for an angle also values between."""
     low, high = _value(coordinate.lower, values), _value(coordinate.upper, values)
     count = max(1, round(PER_HALF_TURN * (high - low) / pi)) if coordinate.angle else 1
@@ -173,8 +173,9 @@ def _value(text: str, values: Mapping[str, float]) -> float:
 
 
 def _about_its_center(body: Body) -> tuple[Principal, float, Point] | None:
-    """Return the principal moments about the centre of mass, the mass and the centre; None if the scene does not give
-    them.
+    """Return the principal moments about the centre of mass, the mass and the centre.
+
+    Return None if the scene does not give mass and centre, or if no body can have these moments.
     """
     if body.mass is None or body.center_of_mass is None:
         return None

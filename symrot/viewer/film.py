@@ -64,7 +64,7 @@ def write_film(
     Raises
     ------
     InputError
-        If the encoder is not installed.
+        If the encoder is not installed, the trajectory has no attitude, or the GIF file cannot be written.
     """
     require_encoder(path)
     times = _times(trajectory)

@@ -23,6 +23,7 @@ from symrot.dynamics.torque_kinds import TORQUE_KINDS, Field
 from symrot.errors import InputError
 from symrot.formula.program import Argument, Program, Signature
 from symrot.formula.tree import rename
+from symrot.inertia.principal import Principal
 from symrot.planning.general_structure import general_structure, switched
 from symrot.planning.plan import Plan
 from symrot.planning.scene_kernel import Parameters, SceneKernel
@@ -187,7 +188,7 @@ def _facts(scene: Scene, is_driven: bool) -> dict[str, Any]:
         "principal": [float(moment) for moment in principal.moments],
         "axes": [[float(entry) for entry in row] for row in principal.axes],
         "axis": [float(row[axis]) for row in principal.axes],
-        "axisName": f"body axis {axis + 1}" if principal.given_axes else "symmetry axis",
+        "axisName": _axis_name(principal, axis),
         "rotor": [float(sum(column)) for column in zip(*rotors, strict=True)] if rotors else [0.0, 0.0, 0.0],
         "hasTorque": bool(torques) or scene.table is not None or is_driven,
         "symmetric": principal.kind == "symmetric",
@@ -202,9 +203,17 @@ def _facts(scene: Scene, is_driven: bool) -> dict[str, Any]:
     }
 
 
+def _axis_name(principal: Principal, axis: int) -> str:
+    """Return the words for principal axis number ``axis``, from 0, of a body."""
+    if principal.given_axes:
+        return f"body axis {axis + 1}"
+    return f"principal axis {axis + 1}" if principal.symmetry_axis is None else "symmetry axis"
+
+
 def _orbit(scene: Scene) -> dict[str, Any] | None:
-    """Return a satellite's mean motion, rad/s, and the body axis of its least moment; None without a gravity
-    gradient.
+    """Return a satellite's mean motion, rad/s, and the body axis of its least moment.
+
+    Return None unless the scene has exactly one torque of a gravity gradient.
     """
     torques = [torque for torque in scene.torques if torque.kind == "gravity_gradient"]
     if len(torques) != 1:

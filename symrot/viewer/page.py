@@ -29,7 +29,8 @@ def page(scene: Scene, trajectory: Trajectory | None = None) -> str:
     scene : Scene
         The scene.
     trajectory : Trajectory, optional
-        A motion to play; without it, the page computes the scene's own motion.
+        A motion to play. Without it, the page computes the scene's own motion, or plays it if a torque has samples,
+        jumps, kinks, or a formula that may have short pulses.
 
     Raises
     ------

@@ -59,7 +59,8 @@ def show(
 
     Notes
     -----
-    A motion under torques that jump or that have no formula is computed by symrot beforehand; the page plays it.
+    A motion under torques that have jumps, kinks, possible short pulses or no formula is computed by symrot beforehand;
+    the page plays it.
 
     Examples
     --------

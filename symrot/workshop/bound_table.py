@@ -35,7 +35,7 @@ def _texts() -> dict[str, str]:
 def library_tasks() -> dict[str, BoundTask]:
     """Return a map from each key of the table to its task: to bound the rounding error of one output of a kernel.
 
-    The kernels are those of the library, with functions for doubles and for floats.
+    The kernels are all kernels of the library, each with a function for doubles and one for floats.
     """
     by_key: dict[str, BoundTask] = {}
     for name, text in _texts().items():

@@ -51,7 +51,8 @@ def rounding_problem(
     Raises
     ------
     InputError
-        For a malformed range, or an input without a range.
+        For a malformed range, an input without a range, a box without a unit quaternion, or ``"float"`` for the kernel
+        of a scene.
     """
     operations, inputs = _operations(kernel, precision), None
     if isinstance(kernel, SceneText):
@@ -72,7 +73,7 @@ def rounding_problem(
 def _check_unit(
     group: Sequence[str], kernel_problem: RoundingProblem, box: Mapping[str, tuple[Fraction, Fraction]]
 ) -> None:
-    """Raise InputError if the box contains no unit quaternion: a bound on such a box would say nothing."""
+    """Raise InputError if the box contains no unit quaternion: a bound on the box would hold for no input."""
     # ``group`` lists the four components of the quaternion, such as "q[1]"
     ends = [sorted(box[place], key=abs) for place in group]
     least = sum(near * near for (near, far) in ends if near * far > 0)
@@ -95,7 +96,10 @@ def _operations(kernel: KernelText, precision: str) -> Operations:
 
 
 def require_known(kernel: str) -> None:
-    """Raise InputError unless ``kernel`` is the name of a library kernel or shipped scene, or the path of a file."""
+    """Raise InputError unless ``kernel`` names a library kernel, a shipped scene, or an existing file.
+
+    Files with the suffixes EMITTED, such as .c, are refused: they are no scene files.
+    """
     path = Path(kernel)
     if is_kernel(kernel) or kernel in shipped_names() or (path.exists() and path.suffix not in EMITTED):
         return

@@ -63,7 +63,7 @@ def _first_line(text: str, emitted: str) -> str:
 
 
 def _meaning(text: str, emitted: KernelUnderTest) -> str:
-    """Return a remark on what an edited C text of a kernel computes: not its formulas, or its formulas otherwise.
+    """Return a remark on what an edited C text of a kernel computes: other values, or the same by other operations.
 
     The remark is ``""`` if the text performs the same operations as the text that symrot emits.
     """

@@ -313,7 +313,10 @@ def _certified(name: str, directory: Path | None, objects: bool) -> tuple[Data, 
 
 
 def all_lines(certificates: Mapping[str, Data]) -> list[str]:
-    """Return lines of text: for each kernel the kinds of proof in its certificate, then the count of each kind."""
+    """Return lines of text: for each kernel the kinds of proof in its certificate, then the count of each kind.
+
+    A table of verdicts on object code follows if certificates have such verdicts.
+    """
     by_kernel = {name: proofs(data) for name, data in certificates.items()}
     width = max(map(len, by_kernel))
     text_lines = [

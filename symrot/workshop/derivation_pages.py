@@ -167,7 +167,10 @@ def _chapters(chosen: Sequence[str]) -> dict[str, list[str]]:
 
 
 def pages(say: Say = _quiet) -> dict[str, str]:
-    """Return the pages of all derivations in Markdown, and their figures in SVG, as a map from file name to text."""
+    """Return the pages of all derivations in Markdown, and their figures in SVG, as a map from file name to text.
+
+    The first file is ``README.md``, the table of contents.
+    """
     derived = _derived(_page_names(), say)
     lines = [
         f"# {TITLE}",
@@ -178,7 +181,6 @@ def pages(say: Say = _quiet) -> dict[str, str]:
         lines += ["", f"## {part}", ""]
         lines += [f"- [{derived[name].title}]({name}.md), {derived[name].extent}" for name in members]
     lines += ["", "Printed by `symrot derive --all`; do not edit.", ""]
-    # the table of contents comes first
     texts = {"README.md": "\n".join(lines)} | {f"{name}.md": page.markdown() for name, page in derived.items()}
     return texts | {figure.file: figure.svg() for page in derived.values() for figure in _figures(page)}
 
@@ -211,7 +213,8 @@ def write_pages(directory: Path | str, form: str, chosen: Sequence[str] = (), sa
     form : str
         ``"latex"`` or ``"html"``.
     chosen : sequence of str
-        Names of pages (see :func:`printed_page`); all if empty. Their order is the reading order.
+        Names of pages (see :func:`printed_page`); all if empty. A book has them in reading order, whatever their order
+        here.
     say : callable
         Called with a line of text about progress before each derivation.
 
@@ -244,11 +247,12 @@ def write_pages(directory: Path | str, form: str, chosen: Sequence[str] = (), sa
 def write_handout(directory: Path | str, form: str, chosen: Sequence[str], say: Say = _quiet) -> list[Path]:
     """Write a few derivations into a directory, for students, and return the paths.
 
+    In Markdown and HTML, a link to a page that is neither chosen nor in the directory becomes plain text.
+
     Parameters and exceptions are those of :func:`write_pages`; ``form`` may also be ``"markdown"``.
     """
     if form != "markdown":
         paths = write_pages(directory, form, chosen, say)
-        # links to pages that are neither in the handout nor in the directory become plain text
         present = _present(Path(directory), chosen, ".html")
         for path in paths if form == "html" else ():
             if path.suffix == ".html":

@@ -123,7 +123,6 @@ def facts() -> DoctorReport:
     cache = build_cache.cache()
     count, size = _cached(cache.directory)
     versions = {name: _version(name) for name in NEEDED}
-    # causes of failure or slowness, one sentence each
     problems = [f"{name} is not installed" for name, version in versions.items() if version is None]
     compiler: CompilerRecord | None = None
     try:

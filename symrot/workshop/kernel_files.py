@@ -38,6 +38,7 @@ __all__ = [
 ]
 
 SUFFIXES = {"c": (".c", ".h", ".json", ".txt", ".in", ".cmake"), "numpy": (".py",), "js": (".js",), "jax": (".py",)}
+MARK = b"symrot emit"  # in each file of a kernel: part of the command that prints it
 RECHECK = "recheck.py"  # the program that checks certificates without symrot
 SCENES = "scenes"  # subfolder for the kernels of shipped scenes; library kernels are directly in the target's folder
 
@@ -155,13 +156,16 @@ def _all_files(targets: Sequence[str], directory: Path, progress: Callable[[str]
 
 
 def _printed_before(directory: Path, targets: Sequence[str]) -> list[str]:
-    """Return the paths of all kernel files in ``directory``, even of kernels that symrot no longer has."""
+    """Return the paths of all kernel files in the folders of ``targets``, even of kernels that symrot no longer has.
+
+    A kernel file has a suffix of its language and contains :data:`MARK`; other files may be the user's.
+    """
     return [
         path.relative_to(directory).as_posix()
         for target in targets
         for folder in (directory / target, directory / target / SCENES)
         for path in sorted(folder.glob("*"))
-        if path.suffix in SUFFIXES[target]
+        if path.suffix in SUFFIXES[target] and path.is_file() and MARK in path.read_bytes()
     ]
 
 
@@ -192,12 +196,11 @@ def write_files(directory: Path, files: Mapping[str, str]) -> list[Path]:
 def write_all(directory: Path, targets: Sequence[str], progress: Callable[[str], object]) -> list[Path]:
     """Write the files of all kernels, of the library and of shipped scenes; return the changed paths.
 
-    Kernel files that symrot no longer prints are deleted; their paths are returned too.
+    Files of kernels that symrot no longer has are deleted; their paths are returned too.
     """
     files = _all_files(targets, directory, progress)
     changed = write_files(directory, files)
     for name in _printed_before(directory, targets):
-        # a kernel that no longer exists
         if name not in files:
             (directory / name).unlink()
             changed.append(directory / name)
@@ -222,8 +225,8 @@ def stale(directory: Path, targets: Sequence[str], progress: Callable[[str], obj
         path = directory / name
         old = path.read_bytes().decode(errors="replace") if path.is_file() else ""
         new = files.get(name, "")
-        if old != new or name not in files:
+        if old != new:
             before, after = f"{path} (on disk)", f"{path} (emitted)"
             diff = list(unified_diff(old.splitlines(), new.splitlines(), before, after, lineterm=""))
-            lines += diff or [f"{path}: {'line endings differ' if name in files else 'a kernel that is not emitted'}"]
+            lines += diff or [f"{path}: line endings differ"]
     return lines

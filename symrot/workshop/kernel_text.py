@@ -1,9 +1,7 @@
 """The texts of one kernel of the library or of one scene: C, NumPy, JavaScript, JAX and its certificate.
 
 The argument ``bounds`` of the methods has the bounds of a scene kernel's rounding errors; only the comment at the head
-of its C files and its certificate depend on them. Library kernels ignore ``bounds``. Whatever does not depend on
-``bounds`` is printed at its first use, and only once.
-"""
+of x"""
 
 import re
 from abc import ABC, abstractmethod
@@ -90,7 +88,10 @@ class KernelText(ABC):
         return bounds
 
     def certificate(self, bounds: Bounds | None = None) -> str:
-        """Return the text of the kernel's certificate, in which all statements are proven."""
+        """Return the text of the kernel's certificate, after all its statements are proven.
+
+        CertificateError is raised if a proof fails.
+        """
         text, section = certificate_text(self.under_test(bounds)), self.rounding(bounds)
         # without bounds of rounding errors, the section is left out
         return with_sections(text, {"rounding": section}) if isinstance(section, dict) else text
@@ -300,6 +301,6 @@ def scene_text(scene: SceneSource, jacobian: Sequence[str] = ()) -> SceneText:
 
 
 def scene_kernel_name(scene: str) -> str:
-    """Return the name of a scene's own kernel: ``t_handle`` -> ``t_handle_rates``."""
+    """Return the name of a scene's own kernel: ``t_handle`` -> ``t_handle_rates``, ``2-b`` -> ``scene_2_b_rates``."""
     name = re.sub(r"\W", "_", f"{scene}_rates", flags=re.ASCII)
     return name if name[0].isalpha() else f"scene_{name}"

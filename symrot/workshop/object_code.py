@@ -64,8 +64,10 @@ def holds(section: Data | None) -> bool:
 
 
 def lines(section: Data | None) -> list[str]:
-    """Return the verdicts on the object code of a kernel, one line for each compiler and its flags."""
-    # ``section`` is the section "objects" of the certificate
+    """Return the verdicts on the object code of a kernel, one line for each compiler and its flags.
+
+    ``section`` is the section ``objects`` of the certificate, or None. A line for each missing compiler comes last.
+    """
     verdicts = [f"{item['compiler']} {item['flags']}: {_verdict(item)}" for item in _objects(section)]
     absent = (section or {}).get("missing", ())
     return [*verdicts, *(f"{compiler} is not on the path: not compared" for compiler in absent)]

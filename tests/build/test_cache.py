@@ -494,3 +494,16 @@ def test_no_array_or_algebra_package_is_imported():
     )
     done = subprocess.run([sys.executable, "-c", program], capture_output=True, text=True, check=True)
     assert done.stdout.strip() == "[]"
+
+
+def test_a_user_without_a_home_directory_gets_a_temporary_cache(monkeypatch):
+    """As in a container whose user has neither HOME nor an entry in the list of users."""
+
+    def unknown(path):
+        raise RuntimeError("Could not determine home directory.")
+
+    monkeypatch.delenv("SYMROT_CACHE")
+    monkeypatch.delenv("XDG_CACHE_HOME", raising=False)
+    monkeypatch.setattr(directories.Path, "expanduser", unknown)
+    assert answer(library.build(SOURCE, "homeless")) == 42.0
+    assert "SYMROT_CACHE" in library.cache().reason

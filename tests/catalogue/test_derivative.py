@@ -1,9 +1,11 @@
-"""Derivatives have the value and the form of SymPy's."""
+"""Derivatives have the value and the form of SymPy's; antiderivatives are proven, or refused in one sentence."""
 
 import pytest
 from sympy import Function, Rational, cos, exp, log, sin, sqrt, srepr
 
 from symrot.catalogue.tools.derivative import derivative
+from symrot.catalogue.tools.integral import antiderivative
+from symrot.proof.derivation import ProofError
 from symrot.symbols import a, phi, q0, t, theta, x, y
 
 FORMULAS = (
@@ -16,3 +18,9 @@ FORMULAS = (
 def test_a_derivative_has_the_form_that_sympy_gives_it(formula):
     for variable in (x, y, t):
         assert srepr(derivative(formula, variable)) == srepr(formula.diff(variable))
+
+
+@pytest.mark.parametrize("integrand", [1 / x, x * cos(x), 1 / cos(x)], ids=str)
+def test_an_integrand_that_is_no_polynomial_is_refused(integrand):
+    with pytest.raises(ProofError, match="polynomial"):
+        antiderivative(integrand, x)

@@ -137,3 +137,12 @@ def test_a_section_of_another_type_is_named_with_the_expected_one(tmp_path):
                 CertificateError, match=f"expected '{name}' to be of type .*, got {type(strange).__name__}"
             ):
                 load_certificate(path)
+
+
+def test_a_file_name_that_no_folder_can_hold_is_refused(tmp_path):
+    path = renamed("quaternion_dcm", "quaternion_other", tmp_path)
+    data = json.loads(path.read_text(encoding="utf-8"))
+    data["files"]["x" * 400] = "0" * 64
+    path.write_text(certificate_json(data), encoding="utf-8")
+    with pytest.raises(CertificateError):
+        symrot.audit(path)

@@ -129,7 +129,8 @@ def test_every_factor_has_a_dimension_and_is_exact():
 
 @pytest.mark.parametrize(("claim", "right"), [
     ("sin(45) = 0.7071", "sin(45°) = 0.7071"), ("cos(60) == 1/2", "cos(60°) == 1/2"), ("tan 45 = 1", "tan 45° = 1"),
-    (r"\sin(30) = \frac12", r"\sin(30^\circ) = \frac12"),
+    (r"\sin(30) = \frac12", r"\sin(30^\circ) = \frac12"), ("30 sin(30) = 15", "30 sin(30°) = 15"),
+    ("cos(22.5)^2 = (2 + sqrt(2))/4", "cos(22.5°)^2 = (2 + sqrt(2))/4"), ("sin(1e2) = cos(10)", "sin(1e2°) = cos(10°)"),
 ])  # fmt: skip
 def test_an_angle_that_is_right_in_degrees_is_diagnosed(claim, right):
     verdict = symrot.check(claim)
@@ -175,4 +176,4 @@ def test_a_prime_after_a_number_is_no_rate():
 
 
 def test_a_repair_has_units_and_no_names_for_them():
-    assert symrot.check("5% = 0.5").repairs[0].text == "5 % = 0.0"
+    assert symrot.check("5% = 0.5").repairs[0].text == "5 % = 0.05"

@@ -283,6 +283,21 @@ def test_a_title_cannot_break_out_of_its_comment(tmp_path):
     compile(symrot.emit(scene, "numpy").source, "kernel", "exec")
 
 
+def test_functions_of_constants_are_certified(tmp_path):
+    """A parameter of the kernel may be a formula with a square root, such as sqrt(k)/A."""
+    torque = {"kind": "expression", "torque": ["sqrt(k)*sin(k)*omega_1", "0", "0"], "parameters": {"k": 2}}
+    content = {"schema": 1, "title": "A root", "body": {"principal": [1, 2, 3]}, "torque": [torque],
+               "initial": {"omega": [1, 1, 1]}, "span": {"t": [0, 9]}}  # fmt: skip
+    emitted = symrot.emit(Scene.from_dict(content))
+    path = tmp_path / f"{emitted.name}.cert.json"
+    for file, content in ((path, emitted.certificate), (path.with_name(f"{emitted.name}.c"), emitted.source),
+                       (path.with_name(f"{emitted.name}.h"), emitted.header)):  # fmt: skip
+        file.write_text(content, encoding="utf-8")
+    assert json.loads(emitted.certificate)["spec"]["parameters"]["p0"] == "sqrt(k)*sin(k)/A"
+    assert recheck.check(path).startswith(emitted.name)
+    exact_check.check(path)
+
+
 NAMES = ("\\", "*\\ int x;", "a??", "??/", "http:", "caf\u00e9", "\u65e5\u672c", "\t", "a\nb", "\u202eabc", "'", '"', "-x",
          "int", "x" * 200, "#", "%s", "quaternion_dcm", "class", '"""')  # fmt: skip
 

@@ -30,6 +30,7 @@ SYSTEMS = {  # states and their rates; k is a parameter
     "time": {"x": "t*x - t**3/(1 + t)", "y": "(t - k)*(2*t + 3*k)*y"},
     "nested": {"x": "((x*y + 1)*y + x)*(x - y)", "y": "k*(x*y)*(x*y) - 3*(1 - 2*(x*y))"},
     "constant": {"x": "k", "y": "3/7", "z": "0*x"},
+    "zero numerator": {"x": "x - (2 - 2)/(y*y)", "y": "x"},
 }
 FUNCTION_SYSTEMS = {  # right-hand sides in x, y, t and k, at points where all functions are smooth
     name: [f"{name}(k*x*y/3)", "x - t*y"] if count == 1 else [f"{name}(x - 1, y)", f"{name}(y, 2) - {name}(k, x)*t"]

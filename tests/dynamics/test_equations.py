@@ -175,9 +175,13 @@ def test_planar_motion_is_the_full_motion():
 
 
 @pytest.mark.parametrize(
-    ("inertia", "torque"), [([1, 2], None), (Matrix([[1, 2, 0], [0, 1, 0], [0, 0, 1]]), None), ([1, 2, 3], [0, 1])]
-)
-def test_inertias_and_torques_of_wrong_shape_are_refused(inertia, torque):
+    ("inertia", "torque"),
+    [
+        ([1, 2], None), (Matrix([[1, 2, 0], [0, 1, 0], [0, 0, 1]]), None), ([1, 2, 3], [0, 1]),
+        ([1, 1, 0], None), (Matrix([[1, 1, 0], [1, 1, 0], [0, 0, 1]]), None),
+    ],
+)  # fmt: skip
+def test_inertias_of_wrong_shape_or_without_inverse_and_torques_of_wrong_shape_are_refused(inertia, torque):
     with pytest.raises(InputError):
         euler_equations(inertia, torque)
 

@@ -99,7 +99,7 @@ def test_statistics_say_where_a_motion_stopped(recwarn):
     assert np.isnan(ensemble.mean("omega", omit_stopped=True)[2]).all() and not recwarn.list
 
 
-@pytest.mark.parametrize("name", ["quaternion", "euler", "dcm", "speed", 3])
+@pytest.mark.parametrize("name", ["quaternion", "euler", "dcm", "speed", 3, ["omega"]], ids=str)
 def test_statistics_of_attitudes_and_unknown_quantities_are_refused(ensemble, name):
     with pytest.raises(InputError, match="quantity: expected one of omega, omega_space, energy, "):
         ensemble.mean(name)

@@ -19,9 +19,11 @@ from sympy import (
     Float,
     Function,
     I,
+    Integral,
     Matrix,
     Ne,
     Rational,
+    Sum,
     atan2,
     cos,
     cot,
@@ -268,6 +270,12 @@ def test_conditions_are_the_denominators_that_may_vanish():
 def test_what_cannot_be_decided_exactly_is_refused(expression, words):
     with pytest.raises(InputError, match=words):
         normal_form(expression)
+
+
+@pytest.mark.parametrize("formula", [Integral(x, x), Integral(x, (x, 0, 1)), Sum(x, (x, 1, 3))], ids=str)
+def test_the_variable_of_an_integral_or_sum_gets_no_value(formula):
+    """The search for a counterexample puts numbers in the place of free symbols only."""
+    assert decide(formula, formula + 1).verdict != "true"
 
 
 def test_shapes_must_agree():

@@ -76,6 +76,7 @@ def test_bad_usage_is_one_sentence_and_exit_code_2(capsys, arguments, words):
 
 @pytest.mark.parametrize("content, words", [
     ("[1]", "expected the JSON"), ("{", "expected JSON"), ('{"schema": 9}', "schema 1"), ('{"schema": 1}', "expected the JSON"),
+    ('{"schema": 1, "exercises": ["x"]}', "expected the JSON"),
 ])  # fmt: skip
 def test_a_file_that_is_no_sheet_is_refused(capsys, tmp_path, content, words):
     (tmp_path / "sheet.json").write_text(content, encoding="utf-8")
@@ -90,6 +91,16 @@ def test_a_line_that_is_no_answer_is_named(capsys, tmp_path):
     answers.write_text("1a: 1\nhello\n", encoding="utf-8")
     code, _, message = run(capsys, "grade", str(sheet), str(answers))
     assert code == USAGE and "line 2" in message
+
+
+def test_bytes_that_are_no_text_are_refused_and_null_is_no_answer(capsys, tmp_path):
+    sheet, answers = tmp_path / "sheet.json", tmp_path / "answers.txt"
+    run(capsys, "exercise", "rod_about_end", "--format", "json", "-o", str(sheet))
+    answers.write_bytes(b"1a: \xff\n")
+    code, _, message = run(capsys, "grade", str(sheet), str(answers))
+    assert code == USAGE and "expected UTF-8 text, got byte 0xff at position 4" in message
+    answers.write_text('{"1a": null, "1b": "1 kg m^2"}', encoding="utf-8")
+    assert "(1a) missing" in run(capsys, "grade", str(sheet), str(answers))[1]
 
 
 @pytest.mark.parametrize(("name", "start"), [

@@ -242,6 +242,8 @@ REFUSED = [
     ([Part("tetrahedron", {"vertices": FLAT}, mass=1)], "one plane"),
     ([Part("tetrahedron", {"vertices": FLAT}, density="1 + x")], "one plane"),
     ([Part("tetrahedron", {"vertices": FLAT[:3]}, mass=1)], "list of 4"),
+    ([Part("sphere", {"radius": 1}, density="1" + "+x" * 2000)], "too many operations"),
+    ([Part("sphere", {"radius": "1e40"}, density="x**12")], "range of a double"),
     ([Part("tetrahedron", {"vertices": [*FLAT[:3], [1, 1]]}, mass=1)], r"vertices\[3\]: expected a point"),
     ([Part("tetrahedron", {"vertices": "corners"}, mass=1)], "list of 4"),
     ([Part("point_masses", {"masses": [1, 2], "points": [[0, 0, 0]]})], "as many masses as points"),

@@ -93,6 +93,8 @@ def test_a_hole_within_parts_is_accepted(parts):
     ([BOX, hole("disk", density=0.1, radius=1)], "reaches out of them"),
     ([BOX, hole("box", density=3, a=1, b=1, c=1)], "got a density of 3 kg/m^3 where the other parts have 2 kg/m^3"),
     ([BOX._replace(density="3 + x"), hole("sphere", density=2.5, radius=1)], "got a density of 2.5 kg/m^3 where the other"),
+    ([part("cylinder", radius=1, length=1, density="8*x**2/radius"),
+      hole("cylinder", radius="1/2", length=1, density="8*x**2/radius")], "kg/m^3 where the other parts have"),
     ([BOX, hole("box", a=1, b=1, c=1), hole("box", (0.5, 0, 0), a=1, b=1, c=1)], "overlaps another hole"),
     ([Part("point_masses", {"masses": [1], "points": [[0, 0, 0]]}),
       Part("point_masses", {"masses": [0.5], "points": [[0, 0, 1]]}, subtract=True)], "to subtract from 0 kg"),

@@ -395,6 +395,7 @@ REFUSED = [
     (("sphere",), {"density": "1/x"}, "polynomial"),
     (("sphere",), {"density": "sin(x)"}, "polynomial"),
     (("sphere",), {"density": "x**13"}, "degree"),
+    (("sphere",), {"density": "1" + "+x" * 2000}, "fewer operations"),
     (("hollow_sphere",), {"inner": 2, "outer": 1}, "inner < outer"),
     (("hollow_sphere",), {"inner": R, "outer": R}, "inner < outer"),
     (("torus",), {"ring": 1, "tube": 2}, "tube <= ring"),

@@ -129,7 +129,7 @@ def test_one_step_alone(page):
     text = part.markdown()
     assert "**2.** So." in text and "**1.**" not in text and "One step, proven" in text
     assert "2.</span>So." in part.html() and r"\paragraph{2.}" in part.latex()
-    for wrong in (0, 4, -1):
+    for wrong in (0, 4, -1, 1.5):
         with pytest.raises(InputError, match=rf"page: expected the number of a step from 1 to 3, got {wrong}"):
             page.part(wrong)
 

@@ -310,6 +310,7 @@ def test_a_level_that_is_reached_exactly_at_the_end_is_listed(method):
         (["q0", {"formula": "q1", "stop": 1}], r"events\[1\]: expected a formula as text"),
         ([symrot.Event("q0", terminal=-1)], "terminal: expected true, false or a count, got -1"),
         ([symrot.Event("q0", direction=2)], "direction: expected -1, 0 or 1, got 2"),
+        ([symrot.Event("q0", direction=np.ones(2))], "direction: expected -1, 0 or 1, got array"),
         (["q0 == "], r"events\[0\]: expected a number, a name or"),
     ],
 )

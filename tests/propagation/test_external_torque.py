@@ -224,6 +224,7 @@ def test_a_torque_that_cannot_be_used_is_refused(torque, words):
         ({"switching_times": [math.inf]}, "switching_times: expected finite times"),
         ({"switching_times": "soon"}, "switching_times: expected finite times"),
         ({"torque_frame": "orbit"}, "torque_frame: expected 'body' or 'space', got 'orbit'"),
+        ({"max_step": [1, 2]}, r"max_step: expected a positive number of seconds, got \[1, 2\]"),
     ],
 )
 def test_options_that_cannot_be_used_are_refused(more, words):

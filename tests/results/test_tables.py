@@ -28,6 +28,21 @@ def test_rotation_is_the_attitude(trajectory):
     assert np.abs(vectors - trajectory.omega_space).max() < 1e-14 * np.abs(vectors).max()
 
 
+def test_a_symmetry_axis_that_is_no_body_axis_keeps_its_angle_to_the_momentum():
+    """As in a regular precession: I = 2 E - n n^T with n = (1, 1, 0)/sqrt(2)."""
+    scene = symrot.Scene.build(
+        body={"inertia": [["3/2", "-1/2", 0], ["-1/2", "3/2", 0], [0, 0, 2]]},
+        initial={"omega": [0.5, 1, 3]},
+        span={"t": [0, 5], "samples": 20},
+    )
+    motion = symrot.propagate(scene)
+    heights = np.einsum("ni,ni->n", motion.axis, motion.angular_momentum_space)
+    assert np.abs(motion.axis[0]) == pytest.approx([np.sqrt(0.5), np.sqrt(0.5), 0])
+    assert np.ptp(heights) < 1e-10 and np.ptp(motion.axis, axis=0).max() > 1
+    many = symrot.propagate_ensemble(scene, omega=[[0.5, 1, 3]] * 2)
+    assert np.abs(many.axis - motion.axis).max() < 1e-10
+
+
 def test_the_trajectory_at_other_times_is_the_one_propagated_there(trajectory):
     times = [0.3, 1.7, 0.3, 0.0]
     for method in ("auto", "taylor"):

@@ -271,3 +271,9 @@ def test_the_axis_of_symmetry_need_not_be_an_axis_of_the_body(tmp_path):
     data = data_of(symrot.show(scene_of(body), tmp_path / "page.html"))
     assert np.abs(data["axis"]) == pytest.approx([np.sqrt(0.5), 0, np.sqrt(0.5)])
     assert data["axisName"] == "symmetry axis"
+
+
+def test_a_body_without_symmetry_axis_shows_a_principal_axis(tmp_path):
+    body = {"inertia": {"xx": "5/2", "yy": "11/4", "zz": "5/2", "xz": "1/2"}}
+    data = data_of(symrot.show(scene_of(body), tmp_path / "page.html"))
+    assert data["axisName"] == "principal axis 3"

@@ -218,8 +218,8 @@ class ExactPath:
     def error(self, t: float, periodic: bool) -> float:
         """Return the error of the states at the time ``t``, from the same path with shorter steps.
 
-        The error of rates is relative to the largest initial rate. With ``periodic``, the body is free, and both paths
-        are computed for one period and continued by it.
+        The error of rates is relative to the largest initial rate (to :data:`SLOWEST` rad/s if the body starts at
+        rest). With ``periodic``, the body is free, and each path is computed for one period and repeated.
         """
         with mpmath.workdps(DIGITS):
             rows = [

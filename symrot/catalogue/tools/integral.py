@@ -4,7 +4,7 @@ from dataclasses import dataclass
 from functools import cache
 from typing import Any
 
-from sympy import Expr, I, Integer, Poly, Rational, Symbol, cos, expand, im, re, sin
+from sympy import Expr, I, Integer, Poly, PolynomialError, Rational, Symbol, cos, expand, im, re, sin
 
 from symrot.exact import is_zero
 from symrot.proof.derivation import ProofError
@@ -46,18 +46,22 @@ def antiderivative(integrand: Expr, variable: Symbol) -> Expr:
     Raises
     ------
     ProofError
-        If the derivative of the result is not the integrand.
+        If the integrand is neither of the two: the derivative of the result must be the integrand.
     """
     total: Expr = Integer(0)
-    if integrand.has(cos(variable), sin(variable)):
-        for (cosines, sines), coefficient in Poly(integrand, cos(variable), sin(variable)).terms():
-            for k, a, b in _waves(cosines, sines):
-                wave = a * variable if k == 0 else a * sin(k * variable) / k - b * cos(k * variable) / k
-                total += coefficient * wave
-    else:
-        for (power,), coefficient in Poly(integrand, variable).terms():
-            total += coefficient * variable ** (power + 1) / (power + 1)
-    if not is_zero(total.diff(variable) - integrand):
+    try:
+        if integrand.has(cos(variable), sin(variable)):
+            for (cosines, sines), coefficient in Poly(integrand, cos(variable), sin(variable)).terms():
+                for k, a, b in _waves(cosines, sines):
+                    wave = a * variable if k == 0 else a * sin(k * variable) / k - b * cos(k * variable) / k
+                    total += coefficient * wave
+        else:
+            for (power,), coefficient in Poly(integrand, variable).terms():
+                total += coefficient * variable ** (power + 1) / (power + 1)
+        proven = is_zero(total.diff(variable) - integrand)
+    except PolynomialError:
+        proven = False
+    if not proven:
         raise ProofError(
             f"expected an integrand that is a polynomial in {variable}, or in its sine and cosine, got {integrand}"
         )

@@ -21,7 +21,7 @@ _DEEPEST = 40  # macros inside each other
 
 
 class Token(NamedTuple):
-    """A token: its kind ("number", "name", "text" or "mark"), its text and its line."""
+    """A token: its kind ("number", "name", "text" for a string, or "mark"), its text and its line."""
 
     kind: str
     text: str
@@ -51,16 +51,21 @@ class _Preprocessor:
     def __init__(self) -> None:
         self.macros: dict[str, _Macro] = {}
         self.active = [True]  # whether the text of each open #if is used
+        self.chosen = [True]  # whether a branch of each open #if has been used
         self.pending: list[Token] = []
 
     def directive(self, text: str, line: int) -> None:
         word, _, rest = text[1:].strip().partition(" ")
         if word in ("if", "ifdef", "ifndef"):
             self.active.append(self.active[-1] and self._holds(word, rest, line))
-        elif word == "else":
-            self.active[-1] = self.active[-2] and not self.active[-1]
+            self.chosen.append(self.active[-1])
+        elif word in ("elif", "else"):
+            left = self.active[-2] and not self.chosen[-1]
+            self.active[-1] = left and (word == "else" or self._holds("if", rest, line))
+            self.chosen[-1] |= self.active[-1]
         elif word == "endif":
             self.active.pop()
+            self.chosen.pop()
         elif self.active[-1] and word == "define":
             self._define(rest, line)
         elif self.active[-1] and word not in ("include", "pragma"):
@@ -147,7 +152,8 @@ def tokens_of(text: str) -> list[Token]:
     Raises
     ------
     CertificateError
-        For a token or a preprocessor line that symrot does not emit.
+        For a token or a preprocessor line that symrot does not emit. Misplaced lines, such as ``#endif`` alone, raise
+        IndexError, and a wrong number of a macro's arguments raises ValueError.
     """
     text = _COMMENT.sub(lambda match: "\n" * match[0].count("\n") or " ", text).replace("\\\n", " \x00")
     preprocessor, line = _Preprocessor(), 0

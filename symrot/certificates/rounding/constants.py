@@ -102,7 +102,8 @@ def parameter_range(
     Raises
     ------
     InputError
-        If the parameter is not a finite number everywhere on the ranges.
+        If the parameter is not a finite number everywhere on the ranges, or its formula contains a function such as
+        tan, of which no range is computed.
     """
     box = {constant: ExactRange(*ends) for constant, ends in ranges.items() if constant in names(formula)}
     points = {constant: ExactRange(value, value) for constant, value in constants.items()}
@@ -121,5 +122,10 @@ def parameter_range(
         )
         raise InputError(
             f"--box: expected ranges on which {name} = {text(formula)} is a finite number, got {ranges_text}"
+        ) from None
+    except KeyError as function:
+        raise InputError(
+            f"--box: expected {name} to be a formula of + - * / and {', '.join(_FUNCTIONS)} if its constants vary, got "
+            f"{text(formula)} with {function.args[0]}"
         ) from None
     return min(each.low for each in enclosures), max(each.high for each in enclosures)

@@ -160,8 +160,9 @@ def _as_matrix(side: Node, shapes: dict[str, tuple[int, int]]) -> Node:
     if side.kind == "call" and side.value == "Matrix":
         (rows,) = side.args
         # each scalar entry of a written-out matrix becomes such a matrix
+        lines = [row.args if row.kind == "list" else (row,) for row in rows.args]
         return replace(
-            matrix_of_rows([[_as_matrix(entry, shapes) for entry in row.args] for row in rows.args]), span=side.span
+            matrix_of_rows([[_as_matrix(entry, shapes) for entry in line] for line in lines]), span=side.span
         )
     side = _with_units(side, shapes)
     return side if shape_of(side, shapes) is not None else _times_unit(side)

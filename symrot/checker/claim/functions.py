@@ -31,7 +31,7 @@ from symrot.exact.limits.size import pieces
 from symrot.kinematics.quaternion import quaternion_product, quaternion_to_dcm
 from symrot.kinematics.rotations import elementary_rotation, skew, vee
 
-__all__ = ["BUILT_IN", "ROTATIONS", "inverted"]
+__all__ = ["BUILT_IN", "ROTATIONS", "arguments_expected", "inverted"]
 
 LARGEST_MATRIX = 12
 
@@ -447,3 +447,11 @@ BUILT_IN: Mapping[str, tuple[int, int, Callable[[Scope, Node], Any]]] = {
 }
 """Maps the name of a function to the smallest and the largest number of its arguments, and the function that
 evaluates it."""
+
+
+def arguments_expected(node: Node) -> str:
+    """Return words for an error message if a call of a built-in function has a wrong number of arguments, else ""."""
+    least, most, _ = BUILT_IN[node.value]
+    count = str(least) if least == most else f"{least} to {most}"
+    wrong = not least <= len(node.args) <= most
+    return f"{count} argument(s) of {node.value} instead of {len(node.args)}" if wrong else ""

@@ -9,7 +9,7 @@ import sympy
 from sympy import Expr, Function, ImmutableMatrix, Integer, Rational, Symbol
 from sympy.core.function import AppliedUndef
 
-from symrot.checker.claim.functions import BUILT_IN, ROTATIONS, inverted
+from symrot.checker.claim.functions import BUILT_IN, ROTATIONS, arguments_expected, inverted
 from symrot.checker.claim.scope import Scope, described, is_matrix
 from symrot.checker.claim.tree import Node
 from symrot.checker.decide.unordered import is_unordered
@@ -231,11 +231,9 @@ def _call(interpreter: Interpreter, node: Node) -> Any:
     if name in interpreter.functions:
         return _function_of_time(interpreter, node)
     if name in BUILT_IN:
-        least, most, function = BUILT_IN[name]
-        if not least <= len(arguments) <= most:
-            count = str(least) if least == most else f"{least} to {most}"
-            raise interpreter.fail(node, f"{count} argument(s) of {name} instead of {len(arguments)}")
-        return function(interpreter, node)
+        if wrong := arguments_expected(node):
+            raise interpreter.fail(node, wrong)
+        return BUILT_IN[name][2](interpreter, node)
     if name in interpreter.values:
         raise interpreter.fail(node, f"an operator between {name} and '(' ({name} is not a function)")
     close = get_close_matches(name, list(BUILT_IN), 1, 0.74)

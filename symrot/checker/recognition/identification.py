@@ -72,7 +72,8 @@ def identify(
     Parameters
     ----------
     formula : str, Expr or Matrix
-        Text in SymPy syntax or as typed, LaTeX (text with a backslash), or a SymPy value.
+        Text in SymPy syntax or as typed, LaTeX (text with a backslash or a dollar sign), or a SymPy value. An equation
+        such as ``I = ..``, which only names a formula, stands for this formula.
     most : int
         How many names to return at most.
     body, frame, sequence : str
@@ -125,8 +126,10 @@ def _value(formula: Any) -> Any:
 
 
 def _in_new_names(tree: Node, source: str, define: Sequence[tuple[str, Node]] = ()) -> Any:
-    """Return the SymPy value of a tree, with the names in ``define`` replaced by the formulas that define them."""
-    # a name becomes a function of time if its rate occurs; define has names with their formulas, such as vectors
+    """Return the SymPy value of a tree, with the names in ``define`` replaced by the formulas that define them.
+
+    A name whose rate occurs becomes a function of time.
+    """
     tree = with_natural_base(tree) if has_natural_base([tree]) else tree
     quantities: dict[str, Any] = {letter: Symbol(letter, real=True) for letter in letters_of_quantities([tree])}
     for name, definition in define:
@@ -223,7 +226,7 @@ def _changes(match: Identification) -> tuple[int, int, int]:
 
 
 def _views(shape: tuple[int, int] | None, count: int) -> Iterator[View]:
-    """Yield the ways to read ``count`` entries: as they are, transposed, or as a quaternion with its scalar last."""
+    """Yield the ways to read ``count`` entries: as they are, transposed, with a quaternion's scalar last, or both."""
     plain = tuple(range(count))
     yield View("", shape, plain)
     if shape is None or shape == (1, 1):
@@ -329,7 +332,6 @@ def _matched(
 
 def _keeps_names(pairs: Sequence[tuple[str, str]]) -> bool:
     """Return whether a name that occurs in both formulas is paired with itself: False for (I, J) and (J, I)."""
-    # pairs (I, J) and (J, I) exchange two names
     names = [(plain_name(mine), plain_name(other)) for mine, other in pairs]
     new = {other for _, other in names}
     return all(mine == other or mine not in new for mine, other in names)
@@ -351,7 +353,7 @@ def _keeps_units(pairs: Sequence[tuple[str, str]]) -> bool:
     ``pairs`` are (known symbol, letter of the claim). A symbol without a unit may have any letter; x, y and z may have
     any letter that books do not use with another unit.
     """
-    # a symbol without unit may have any letter; x, y, z may be the components of any vector
+    # x, y, z may be the components of any vector
     with_unit = [(mine, other) for mine, other in pairs if UNIT_OF_NAME.get(mine) != "1"]
     return all(agree_in_unit(mine, other) for mine, other in with_unit) and all(
         has_usual_letter(mine, other) for mine, other in with_unit if mine not in ("x", "y", "z")

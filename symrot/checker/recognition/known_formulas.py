@@ -175,7 +175,7 @@ def _selected(
 
 @cache
 def ending_of(name: str) -> str:
-    """Return the end ", squared" or ", acos" of a known formula's name, or "" if the name has no such end."""
+    """Return the end of a known formula's name, such as ", squared" or ", 2 atan2"; "" without such an end."""
     # the formula then is a function of the quantity: its square, cosine, or half angle's cosine
     ending = re.search(r", (squared|(\S+ )?(acos|asin|atan2))$", name)
     return ending[0] if ending else ""

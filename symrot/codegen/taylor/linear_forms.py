@@ -102,7 +102,7 @@ def total(left: Linear, right: Linear, sign: int) -> Linear:
     for series, weight in right.terms.items():
         both = folded(("+", terms[series], weight)) if series in terms else weight
         if both == ZERO:
-            del terms[series]
+            terms.pop(series, None)
         else:
             terms[series] = both
     return Linear(None if terms and constant == ZERO else constant, terms)

@@ -39,7 +39,8 @@ def grade(exercises: Exercise | ExerciseSheet, answers: Mapping[str, str] | Sequ
     Raises
     ------
     InputError
-        If there is an answer to a question that does not exist, or if the answers are one text.
+        If there is an answer to a question that does not exist, if a sequence has more answers than there are
+        questions, or if the answers are one text.
 
     Examples
     --------
@@ -95,19 +96,28 @@ def grade_files(exercises: str | Path, answers: str | Path) -> Grades:
     Raises
     ------
     InputError
-        If a file has another form, or answers a question that the sheet does not have.
+        If a file has another form or is no text in UTF-8, or if it answers a question that the sheet does not have.
     OSError
         If a file cannot be read.
     """
-    sheet = read_sheet(_json(exercises, Path(exercises).read_text(encoding="utf-8")), str(exercises))
-    text = Path(answers).read_text(encoding="utf-8")
-    return grade(sheet, _answers(answers, text))
+    sheet = read_sheet(_json(exercises, _text(exercises)), str(exercises))
+    return grade(sheet, _answers(answers, _text(answers)))
+
+
+def _text(path: str | Path) -> str:
+    content = Path(path).read_bytes()
+    try:
+        return content.decode("utf-8-sig")
+    except UnicodeDecodeError as reason:
+        raise InputError(
+            f"{path}: expected UTF-8 text, got byte 0x{content[reason.start]:02x} at position {reason.start}"
+        ) from None
 
 
 def _answers(path: str | Path, text: str) -> dict[str, str]:
     if text.lstrip().startswith("{"):
         data = _json(path, text)
-        return {str(key): str(value) for key, value in data.items()}
+        return {str(key): "" if value is None else str(value) for key, value in data.items()}
     answers = {}
     for number, line in enumerate(text.splitlines(), 1):
         if not line.strip() or line.lstrip().startswith("#"):

@@ -104,7 +104,7 @@ def _readings(answer: str) -> Iterator[_Number]:
 def _read(text: str) -> _Number | None:
     """Return the number and unit in a text such as ``0.5 kg m^2``, whose unit may be missing.
 
-    Return None if the text is not a number with a unit.
+    Return None if the text is not a number, with or without a unit.
     """
     for end in range(len(text), 0, -1):
         rest = text[end:].strip().removeprefix("*")
@@ -154,6 +154,8 @@ def _mark(key: str, answer: str, number: _Number, question: Question) -> Mark:
         return _wrong(key, answer, "dimension", texts)
     scale = _factor(number.unit) / _factor(own) if number.unit is not None else 1.0
     value = number.value * scale
+    if not isfinite(value):
+        return _wrong(key, answer, "other", {})
     if _is_right(value, truth, number.half_digit * scale, number.digits):
         forgotten = number.unit is None and own is not None and bool(own.dimension)
         if forgotten:
@@ -203,7 +205,7 @@ def _faults(value: float, truth: float, question: Question) -> Iterator[tuple[st
         yield "degrees", {}
     if _near(value, truth * 2 * pi) or _near(value, truth / (2 * pi)):
         yield "turns", {}
-    power = log10(abs(value / truth)) if value * truth > 0 else 0.0
+    power = log10(abs(value)) - log10(abs(truth)) if value * truth > 0 else 0.0
     if round(power) and abs(power - round(power)) < TOLERANCE / 2:
         yield "power_of_ten", {}
     if truth and _near(value, 1 / truth):

@@ -1,6 +1,7 @@
 """Events: formulas of time, angular velocity and attitude whose zeros along a motion are located."""
 
 from collections.abc import Iterable
+from numbers import Real
 from typing import Any, NamedTuple
 
 from symrot.errors import InputError
@@ -98,7 +99,8 @@ def _checked(event: Event, where: str) -> Event:
         raise InputError(f"{where}: {expectation}, got {', '.join(unknown)}{reason}")
     if not isinstance(event.terminal, bool | int) or event.terminal < 0:
         raise InputError(f"{where}: terminal: expected true, false or a count, got {number.show(event.terminal)}")
-    if isinstance(event.direction, bool) or event.direction not in (-1, 0, 1):
+    is_number = isinstance(event.direction, Real) and not isinstance(event.direction, bool)
+    if not is_number or event.direction not in (-1, 0, 1):
         raise InputError(f"{where}: direction: expected -1, 0 or 1, got {number.show(event.direction)}")
     return event._replace(direction=int(event.direction))
 

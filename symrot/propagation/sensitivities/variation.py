@@ -125,11 +125,11 @@ def columns_of(scene: Scene, variables: Sequence[Variable]) -> list[Column]:
 def structure_of(scene: Scene, columns: Sequence[Column], varying: Collection[str] = ()) -> Structure:
     """Return the structure of the equations for derivatives by variables: which constants are zero, equal or free.
 
-    Free are the constants that a change of a variable changes, and the constants ``varying``: they remain parameters in
-    the equations. ``columns`` has one :class:`Column` for each variable.
+    The constants that a change of a variable changes, and the constants ``varying``, are free whatever their present
+    values: they are parameters of the equations. ``columns`` has one :class:`Column` for each variable.
     """
-    # They become parameters even if they are now zero or one, since derivatives by them are needed; so do constants
-    # that differ between the motions of an ensemble (varying). Other zeros and ones simplify the equations.
+    # Derivatives by the former are needed, and the latter differ between the motions of an ensemble. Other zeros and
+    # ones simplify the equations.
     moving = {name for column in columns for name in column.constants} | set(varying)
     general, inertia = general_structure(scene, switched(scene)), scene.body.inertia
     nonzero = {name for name, (i, j) in PRODUCTS.items() if inertia[i][j] != 0 or name in moving}

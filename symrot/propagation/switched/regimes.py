@@ -215,7 +215,7 @@ class Regime:
         return rates, guards, quantities
 
     def active(self, modes: Modes) -> list[bool]:
-        """Return, for each guard (argument of sign, abs, ..), whether its zero ends the smooth motion."""
+        """Return, for each :class:`Guard` in ``guards``, whether its zero ends the smooth motion."""
         key = tuple(modes.values())
         if key not in self._active:
             # it does not if its function has no effect, as in an unused branch of where(condition, u, v)

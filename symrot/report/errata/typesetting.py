@@ -97,7 +97,7 @@ def _places_of_others(node: Node, other: Node) -> list[int]:
 
 
 def latex(node: Node, letters: Mapping[str, str] = {}, functions: Collection[str] = ()) -> str:
-    """Return the LaTeX of a formula; its marked parts, those that an erratum corrects, are in boxes.
+    """Return the LaTeX of a formula; the marked parts, which an erratum corrects, are in boxes.
 
     ``letters`` maps names to the LaTeX of the document's letters; ``functions`` are the names that depend on time.
     """

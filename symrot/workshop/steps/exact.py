@@ -233,12 +233,14 @@ class ExactStepText(StepFiles):
 
     @property
     def _rate(self) -> Fraction:
-        """The size of the angular velocities at which the certificate checks the equations, a power of two, rad/s."""
+        """The size of the angular velocities at which the certificate checks the equations, a power of two, rad/s.
+
+        For a top it is about sqrt(pull/A), so that both weight and rotation matter.
+        """
         names = [name for name, *_ in self.form.parameters]
         if "pull" not in names:
             return Fraction(1)
         values = dict(zip(names, (value for _, _, value in self.form.parameters), strict=True))
-        # those of a top in which weight and rotation matter
         exponent = (int(values["pull"] / values["A"] * 2**64).bit_length() - 64) // 2
         return Fraction(2) ** exponent
 

@@ -27,6 +27,8 @@ CASES = (
     ("det(a σ_x + b σ_y + c σ_z) = -a² - b² - c²", 0),
     (r"\det\sigma_x = 1", np.linalg.det(X) - 1),
     ("tr σ_x = 0", np.trace(X)),
+    ("[σ_x σ_y, σ_y σ_z, σ_z σ_x] = [i σ_z, i σ_x, i σ_y]", X @ Y - 1j * Z),
+    ("[σ_x², σ_y², σ_z²] = [1, 1, -1]", Z @ Z + np.eye(2)),
     ("(1 + i σ_z) σ_x (1 - i σ_z) = -2 σ_y", (np.eye(2) + 1j * Z) @ X @ (np.eye(2) - 1j * Z) + 2 * Y),
 )
 

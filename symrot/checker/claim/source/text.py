@@ -22,7 +22,7 @@ from symrot.checker.arrays.pauli import with_pauli_matrices
 from symrot.checker.arrays.quaternions import Quaternions, used_quaternions
 from symrot.checker.arrays.rotated_vectors import as_matrix_of_map
 from symrot.checker.claim.claims import Claim, assumed_names
-from symrot.checker.claim.functions import BUILT_IN, ROTATIONS
+from symrot.checker.claim.functions import BUILT_IN, ROTATIONS, arguments_expected
 from symrot.checker.claim.quantities import (
     OTHER_MEANINGS,
     has_natural_base,
@@ -79,13 +79,13 @@ def claim_of_relation(
     Raises
     ------
     InputError
-        For a relation that is no equation, a hypothesis that cannot be read, and a unit that is unknown or belongs to
-        a name that the claim does not have.
+        For a relation that is no equation, a built-in function with too few or too many arguments, a hypothesis that
+        cannot be read, and a unit that is unknown or belongs to a name that the claim does not have.
     """
     if relation[0] != "==":
         instead = "an inequality cannot be decided here; write '=' to ask whether both sides are equal"
         raise InputError(f"expected a claim with '=', got '{relation[0]}' in {source[:60]!r} ({instead})")
-    _check_products(relation, source.strip())
+    _check_arguments((*relation[1:], *(tree for _, tree in define), *context), source.strip())
     relation, on_indices = written_out(relation)
     notes = [*notes, *([on_indices] if on_indices else [])]
     relation, on_form = _with_own_name(relation)
@@ -183,11 +183,15 @@ def claim_of_relation(
     )
 
 
-def _check_products(relation: Relation, source: str) -> None:
-    """Raise InputError if a call of cross or dot in a relation has not two arguments."""
-    for node in nodes_of(*relation[1:]):
-        if node.kind == "call" and node.value in ("cross", "dot") and len(node.args) != 2:
-            expected = f"2 argument(s) of {node.value} instead of {len(node.args)}"
+def _check_arguments(trees: Sequence[Node], source: str) -> None:
+    """Raise InputError if a built-in function, such as ``dot``, has too few or too many arguments in a tree.
+
+    ``Matrix`` and ``diff`` without brackets are refused too.
+    """
+    for node in nodes_of(*trees):
+        if node.kind == "name" and node.value in ("Matrix", "diff"):
+            raise complaint(source, "", node.span[0], f"brackets after the function {node.value}")
+        if node.kind == "call" and node.value in BUILT_IN and (expected := arguments_expected(node)):
             raise complaint(source, "", node.span[0], expected)
 
 

@@ -132,7 +132,6 @@ def is_unusual(known: Identification) -> bool:
 
     Such letters are omega_1 to omega_3, and p, q, r, for components of the angular velocity.
     """
-    # books use omega_1, and p, q, r, for components in the body frame
     components = [new for old, new in known.mapping.items() if old in COMPONENTS_OF_OMEGA]
     return "space frame" in known.name and any(
         re.fullmatch(r"(omega|w)_?[1-3]|[pqr]", plain_name(new)) for new in components

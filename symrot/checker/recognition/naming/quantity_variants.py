@@ -131,7 +131,10 @@ def _note(square: Node, whole: Node) -> str:
 
 
 def _squares(formula: Node) -> Iterator[tuple[Node, Node]]:
-    """Yield (``sigma**2``, sum of the squares of its components) for each letter that occurs only in its square."""
+    """Yield (``sigma**2``, sum of the squares of its components) for each letter that occurs only in its square.
+
+    At least two components, such as sigma_1 and sigma_2, must occur in the formula too.
+    """
     letters = [
         node for _, node in walk(formula) if node.kind == "name" or (node.kind == "call" and node.args == (TIME,))
     ]
