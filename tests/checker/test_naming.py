@@ -87,6 +87,7 @@ def test_a_sine_or_cosine_of_zero_is_read():
 
 
 WRONG = (
+    ("φ̇ = (ω₁ cos ψ + ω₂ cos ψ)/sin θ", "sin_cos_swap", "first component of the angle rates of ZXZ from omega in the body"),
     (r"\omega_x = \dot\phi \sin\theta \sin\psi - \dot\theta \cos\psi", "sign_of_term",
      "first component of the angular velocity of ZXZ in the body frame"),
     ("w2 == dphi*sin(theta)*cos(psi) - dtheta*cos(psi)", "sin_cos_swap",

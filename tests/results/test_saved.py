@@ -58,6 +58,9 @@ def test_quantities_that_follow_from_omega_and_attitude_are_computed(trajectory,
     assert saved.euler("XYZ").tolist() == trajectory.euler("XYZ").tolist()
     with pytest.raises(InputError, match="energy: expected a file with this quantity, got a file with t, omega"):
         saved.quantity("energy")
+    for samples in (saved, trajectory):
+        with pytest.raises(InputError, match=r"got \['omega'\]|\['omega'\]: expected a file with this quantity"):
+            samples.quantity(["omega"])
     with pytest.raises(AttributeError, match="no quantity 'energy'; it has t, omega, quaternion"):
         _ = saved.energy
 
