@@ -44,7 +44,7 @@ _OPERATIONS: Mapping[str, Callable[[Any, Any], Any]] = {
 
 
 class Expressions(Reader):
-    """Reader of C expressions: each method reads one from the tokens and returns it compiled, as a :class:`Value`."""
+    """Reader of C expressions: it reads an expression from the tokens and returns it compiled, as a :class:`Value`."""
 
     def _expression(self) -> Value:
         value = self._assignment()
