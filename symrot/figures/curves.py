@@ -99,7 +99,7 @@ def turning(start: ArrayLike, end: ArrayLike) -> Floats:
 
 
 def cone(axis: ArrayLike, half_angle: float, length: float, view: View) -> tuple[Floats, list[Floats]]:
-    """Return the rim of a cone with its apex at the origin, and the two lines of its visible outline.
+    """Return the rim of a cone with its apex at the origin and sides of ``length``, and two lines: its visible outline.
 
     There are no such lines if the line of sight lies inside the cone.
     """

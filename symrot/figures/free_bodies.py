@@ -41,7 +41,8 @@ def free_motion(moments: ArrayLike, omega: ArrayLike, times: Floats, quaternion:
 def one_period(moments: ArrayLike, start: Floats) -> Trajectory:
     """Return a free motion over one period of omega, whose initial value is ``start``, rad/s, in body components.
 
-    Exactly one component of ``start`` must be zero, because the zeros of this component mark the period.
+    Exactly one component of ``start`` must be zero, and its sign must change: the zeros of this component mark the
+    period.
     """
     (zero,) = np.flatnonzero(start == 0.0)
     times = np.linspace(0.0, 80.0, 4001)

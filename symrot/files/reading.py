@@ -1,6 +1,6 @@
 """Reading of files of unknown origin: only regular files up to a size limit, so that no pipe or device blocks.
 
-symrot opens all scenes, claim files, tables, certificates and studies here. Standard library only.
+symrot opens all scenes, claim files, tables, certificates, studies, robot files and meshes here. Standard library only.
 """
 
 import os

@@ -46,8 +46,8 @@ def unwrap_euler(angles: Any, sequence: str, locked: Any = None) -> Array:
     -----
     Each attitude has two sets of angles, apart from multiples of 2 pi: a proper sequence also has ``(q1 + pi, -q2, q3 +
     pi)``, a Tait-Bryan sequence ``(q1 + pi, pi - q2, q3 + pi)``. At each sample the set is chosen that is closer to the
-    set chosen at the sample before. The sets are called own, the one in ``angles``, and other. One comparison for each
-    pair of neighbouring samples suffices: the own set of the first is compared with both sets of the second. If the
+    set chosen at the sample before. Call the set in ``angles`` own, the second set other. One comparison for each pair
+    of neighbouring samples suffices: the own set of the first sample is compared with both sets of the second. If the
     other set is closer, the choice changes between these samples from own to other, or from other to own.
     """
     (first, _, last), _, _, _ = sequence_axes(sequence)

@@ -147,6 +147,13 @@ def test_other_files_are_refused_in_one_sentence(tmp_path):
         assert "\n" not in str(caught.value) and str(file) in str(caught.value)
 
 
+def test_only_a_trajectory_is_saved(path):
+    many = symrot.propagate_ensemble("t_handle", omega=[[0, 1, 2]], t=[0, 1])
+    for other in (symrot.load(path), many, many[0], "t_handle"):
+        with pytest.raises(InputError, match=r"save: expected a trajectory, as symrot\.propagate returns it, got "):
+            symrot.save(other, path)
+
+
 def test_a_truncated_file_is_refused(path):
     path.write_bytes(path.read_bytes()[:-40])
     with pytest.raises(InputError, match="load: expected an NPZ file"):
