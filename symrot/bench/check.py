@@ -52,7 +52,7 @@ def claims(group: str) -> list[str]:
 
 
 def timed(claim: str) -> Timed:
-    """Check a claim in a new process; return its verdict and its processor time in seconds."""
+    """Check a claim in a new process; return its verdict (``"refused"`` if there is none) and its processor time, s."""
     before = os.times()
     command = [sys.executable, "-m", "symrot", "check", claim, "--json"]
     done = subprocess.run(command, capture_output=True, text=True, check=False)
@@ -63,7 +63,10 @@ def timed(claim: str) -> Timed:
 
 
 def main(arguments: Sequence[str]) -> int:
-    """Print the median and the largest time of the claims in each group; ``arguments`` may name the groups."""
+    """Print the median and the largest time of the claims in each group, and each claim that is slower than its limit.
+
+    ``arguments`` may name the groups; with ``--list`` all claims are printed.
+    """
     listing = "--list" in arguments
     groups = [argument for argument in arguments if argument != "--list"] or [*LIMITS]
     lists = {group: claims(group) for group in groups}

@@ -207,12 +207,16 @@ def arguments(parser: ArgumentParser) -> None:
 def run(options: Namespace, say: Progress) -> ModeReport:
     """Run the mode of ``symrot bench`` that the options choose, and return its report.
 
-    ``say`` is called with messages about the progress.
+    If the option ``--out`` names a file, the data of the report are written to it as JSON. ``say`` is called with
+    messages about the progress.
 
     Raises
     ------
     InputError
-        If the options choose no mode or more than one, or include an option that the mode does not accept.
+        If the options choose no mode or more than one, include an option that the mode does not accept or a wrong
+        value, or if the mode refuses the scene or a file.
+    SymrotError
+        If a mode fails, for instance because reference solutions differ.
     """
     asked = [mode for mode in MODES if mode.option and getattr(options, mode.option[2:])]
     names = ", ".join(mode.option for mode in MODES if mode.option)

@@ -2,8 +2,8 @@
 
     python -m symrot.bench.dense [--samples 20000] [--rounds 15] [--motion NAME]
 
-heyoka runs by ``propagate_grid`` and by ``propagate_until`` with ``c_output``. Each run of heyoka is compared with
-symrot's fastest run whose error is not larger. Errors are those of the last sample.
+heyoka runs by ``propagate_grid`` and by ``propagate_until`` with ``c_output``. At each tolerance, the faster of the two
+is compared with symrot's fastest Taylor series whose error is not larger. Errors are those of the last sample.
 """
 
 import argparse
@@ -22,7 +22,7 @@ from symrot.propagation.propagate import propagator
 __all__ = ["main", "measure"]
 
 OURS = tuple(10.0**-k for k in range(4, 15))  # symrot's tolerances; the first gives errors as large as heyoka's largest
-WHOLE = 7  # states: angular velocity and attitude
+WHOLE = 7  # number of states of a motion with attitude: angular velocity and quaternion
 PEERS = (1e-9, 1e-12, 2.0**-52)
 
 

@@ -2,7 +2,7 @@
 
     python -m symrot.bench.ensemble [--rounds 9] [--orders] [--motion NAME] [--many 4096]
 
-The error is the largest of the first 16 trajectories against heyoka in long double, itself checked in 40 digits.
+The error is the largest of the first 16 trajectories against heyoka in long double, which is compared with 40 digits.
 ``--orders`` compares orders of symrot's series instead.
 """
 
@@ -31,7 +31,7 @@ ENSEMBLE_TOLERANCES = (1e-6, 1e-12)  # only two, because heyoka's ensemble copie
 
 
 class Start(NamedTuple):
-    """An ensemble to be timed: motion, initial states (n, N), end time, and the exact end states of the first 16."""
+    """An ensemble to be timed: motion, initial states (n, N), end time, s, and reference end states of the first 16."""
 
     problem: Any
     y: Floats
@@ -40,13 +40,13 @@ class Start(NamedTuple):
 
     def error(self, states: Floats) -> float:
         """Return the largest error of the end states, whose row k belongs to trajectory k."""
-        # Only the first trajectories have an exact end state.
+        # Only the first trajectories have a reference.
         pairs = zip(states[: len(self.exact)], self.exact, strict=True)
         return float(max(self.problem.largest_error(computed, exact) for computed, exact in pairs))
 
 
-def prepare(name: str, n: int, stop: float, problem: Any) -> Start:
-    """Return an ensemble of ``n`` initial states: first that of the motion ``name``, then random states near it."""
+def prepare(n: int, stop: float, problem: Any) -> Start:
+    """Return an ensemble of ``n`` initial states: first that of the motion ``problem``, then random states near it."""
     random = np.random.default_rng(1)
     y = np.tile(np.array(problem.y0), (n, 1))
     rates = problem.blocks[1]
@@ -213,14 +213,14 @@ def main(arguments: list[str] | None = None) -> None:
     options = parser.parse_args(arguments)
     for name in [options.motion] if options.motion else MOTIONS:
         problem = SteppedProblem(name, 1.0)
-        few = prepare(name, 8, problem.stop, problem)
+        few = prepare(8, problem.stop, problem)
         off = problem.largest_error(few.exact[0], reference(name))
         print(f"\n{name}, 8 trajectories, t = {problem.stop:g} s (long double against 40 digits: {off:.0e})")
         if options.orders:
             _print_orders(few, options.rounds)
             continue
         _print_table(measure(few, options.rounds), 8)
-        many = prepare(name, options.many, problem.stop / SHORTER, problem)
+        many = prepare(options.many, problem.stop / SHORTER, problem)
         print(f"{name}, {options.many} trajectories, t = {many.stop:g} s")
         _print_table(measure(many, max(1, options.rounds // 4), many=True), options.many)
 

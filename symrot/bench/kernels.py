@@ -118,8 +118,8 @@ def _timed(run: Callable[[int, int], object], samples: int) -> Callable[[int], f
     ``place`` is the number of the memory block (:func:`_block`) with inputs and outputs.
     """
     repeats, elapsed = 1, 0.0
-    # so many repeats that the clock measures the time accurately
-    while elapsed < SHORTEST:  # the first runs start with cold caches
+    # repeats are doubled until the clock measures the time accurately; the first runs start with cold caches
+    while elapsed < SHORTEST:
         repeats *= 2 if elapsed else 1
         began = perf_counter()
         run(repeats, 0)

@@ -20,6 +20,7 @@ from symrot.propagation.propagate import propagator
 from symrot.propagation.propagator import Propagator
 from symrot.propagation.steppers.segments import Segment
 from symrot.propagation.steppers.stepping import DONE
+from symrot.scene.scene import load_scene
 
 __all__ = ["main", "measure"]
 
@@ -70,6 +71,11 @@ def measure(name: str, method: str, samples: int, rounds: int) -> tuple[float, f
     """Return the median seconds of ``propagator(t)`` and of the bare C call.
 
     None if the method cannot compute the scene.
+
+    Raises
+    ------
+    InputError
+        If a stepper in C cannot follow the motion to its end in one call.
     """
     try:
         propagate = propagator(name, method)
@@ -92,6 +98,11 @@ def main(arguments: list[str] | None = None) -> None:
     parser.add_argument("scenes", metavar="SCENE", nargs="*", default=list(SCENES))
     parser.add_argument("--rounds", type=int, default=25)
     options = parser.parse_args(arguments)
+    try:
+        for name in options.scenes:
+            load_scene(name)
+    except InputError as reason:
+        parser.error(str(reason))
     print(f"{'':28}{'method':>8}{'samples':>9}{'call us':>10}{'in C us':>10}{'Python us':>11}")
     every: dict[int, list[float]] = {}
     for name in options.scenes:

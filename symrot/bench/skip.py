@@ -1,8 +1,8 @@
 """The gain of specialised kernels: cost of each motion with the most general kernel and with the scene's own kernel.
 
-The general kernel has a full inertia tensor, the attitude and all torques that can act together. Both must reach the
-same final state. The table has nanoseconds per evaluation of the rates in C, and microseconds per motion; the column
-``auto us`` is the time with the method ``auto``.
+The general kernel has a full inertia tensor, the attitude and all kinds of torques that can act together. The table
+says so if the two do not reach the same final state. It has nanoseconds per evaluation of the rates in C, and
+microseconds per motion; the column ``auto us`` is the time with the method ``auto``.
 """
 
 import ctypes
@@ -67,10 +67,12 @@ def _nothing(kind: str) -> Torque:
 
 
 def general_plan(scene: Scene) -> Plan:
-    """Return a plan for ``scene`` with full inertia tensor, no symmetry and all torques that can act together."""
+    """Return a plan for ``scene`` with full inertia tensor, no symmetry and all kinds of torques that can act together.
+
+    A torque of a kind that the scene lacks is zero; a torque given by an expression is not added.
+    """
     kinds = {torque.kind for torque in scene.torques}
     left_out = ABOUT_POINT if kinds & set(ABOUT_CENTRE) else ABOUT_CENTRE
-    # Kinds that the scene lacks get a zero torque.
     lacking = [kind for kind in TORQUE_KINDS if kind not in kinds and kind != "expression" and kind not in left_out]
     whole = replace(scene, torques=(*scene.torques, *map(_nothing, lacking)))
     return Plan(whole, general_structure(whole), ())

@@ -149,9 +149,9 @@ def _in_c(motion: Any, initial: Any, rounds: int) -> float:
 def changed_starts(scenes: list[str], rounds: int) -> None:
     """Print a table of the times, microseconds, of a propagator's call with a new initial state.
 
-    It has a row for each scene and method. The first three columns are whole calls: with a new angular velocity, with a
-    new attitude, and with both. Column 4 is the time outside of C in one of the first two calls (the larger of the
-    two), and column 5 that in the third call.
+    It has a row for each scene and each method that can compute the scene. The first three columns are whole calls:
+    with a new angular velocity, with a new attitude, and with both. Column 4 is the time outside of C in one of the
+    first two calls (the larger of the two), and column 5 the time outside of C in the third call.
     """
     heads = ("omega", "attitude", "both", "Python", "of both")
     print(f"{'us of a changed start':28}{'method':>8}" + "".join(f"{head:>9}" for head in heads))
@@ -171,6 +171,10 @@ def changed_starts(scenes: list[str], rounds: int) -> None:
 
 
 def _ensemble(scene: Scene, n: int, random: np.random.Generator) -> Iterator[tuple[str, dict[str, Any]]]:
+    """Yield two ensembles of ``n`` motions near that of ``scene``: other initial states, then other constants too.
+
+    Each is a pair (what varies, in words; arguments of :func:`propagate_ensemble`).
+    """
     omega, quaternion = _start(scene)
     if sum(w == 0 for w in scene.initial.omega_b) == 2 and scene.torques:
         omega = omega * [w != 0 for w in scene.initial.omega_b]  # a rotation about one axis stays about that axis
@@ -221,6 +225,11 @@ def main(arguments: list[str] | None = None) -> None:
     parser.add_argument("--ensembles", action="store_true", help="measure ensembles instead of single calls")
     parser.add_argument("--most", type=int, default=SIZES[-1], help="number of trajectories in the largest ensemble")
     options = parser.parse_args(arguments)
+    try:
+        for name in options.scenes:
+            (_scene if options.ensembles else load_scene)(name)
+    except InputError as reason:
+        parser.error(str(reason))
     if options.ensembles:
         ensembles(options.scenes or [*ENSEMBLES, *MADE], options.rounds or 5, options.most)
     else:

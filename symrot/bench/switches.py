@@ -28,7 +28,7 @@ ROUNDS = 3
 
 
 class Problem(NamedTuple):
-    """A test problem: a torque about axis 3, N m, the end time, s, the initial omega_3, rad/s, and the solution."""
+    """A test problem: torque about axis 3, N m, its parameters, end time, s, initial omega_3, rad/s, and solution."""
 
     torque: str
     parameters: dict[str, float]

@@ -111,9 +111,11 @@ def scene(name: str) -> Scene:
 
 
 def reference(name: str, scale: float = 1.0) -> Floats:
-    """Return the exact last state of the motion ``name`` over ``scale`` times its span."""
+    """Return the last state of the motion ``name`` over ``scale`` times its span, computed in 40 digits.
+
+    For ``scale`` 1 it is read from the file :data:`REFERENCES`.
+    """
     stored = tomllib.loads(REFERENCES.read_text(encoding="utf-8")).get(name)
-    # REFERENCES has the motions with scale 1.
     return (
         np.array([float(value) for value in stored])
         if stored and scale == 1.0

@@ -3,7 +3,6 @@
     python -m symrot.bench.ulps [--points 20000]
 
 The functions come from emitted C in two forms, for one sample (``one``) and without branches for batches (``batch``).
-The reach is the largest tested abs(x).
 """
 
 import argparse
@@ -170,11 +169,11 @@ def _text(kernel: str) -> str:
 
 def _ulps(computed: float, exact: Any, real: Real, x: float = 0.0) -> float:
     """Return the distance of ``computed`` from ``exact`` in units in the last place of ``exact``, or in units of
-    2^-53/x^2 if x is not 0.
+    2^-53/x^2 (float: 2^-24/x^2) if x is not 0.
     """
     digits, least = DIGITS[real.precision]
     # tangent_gap, (sin x - x cos x)/x^3, decreases as cos(x)/x^2: near its zeros, which are no floating-point numbers,
-    # its relative error has no bound. In float, the unit is 2^-24/x^2.
+    # its relative error has no bound.
     if x:
         return abs(float((computed - exact) / max(ldexp(1.0, -digits) / x / x, ldexp(1.0, least))))
     if not exact:

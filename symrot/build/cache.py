@@ -1,4 +1,4 @@
-"""The cache of compiled C: a library is compiled once, stored for the user, and later loaded without a compiler.
+"""The cache of compiled C: a library is compiled once, stored for the user, and later loaded without being compiled.
 
 The name of a library contains the checksum of its content, so a damaged one is built again. ``CC`` names the compiler,
 ``SYMROT_CACHE`` the cache directory. If that directory cannot be used, a temporary one replaces it. This module does
@@ -68,13 +68,12 @@ class Compiler(NamedTuple):
 
 
 class Cache(NamedTuple):
-    """The directory that stores compiled libraries, and the reason if it is temporary.
+    """The directory that stores compiled libraries, and, if it is temporary, the reason.
 
-    The reason says why the user's directory cannot be used.
+    The reason says why the user's directory cannot be used; it is empty if that directory is used.
     """
 
     directory: Path
-    # why the user's directory cannot be used; empty if it is used
     reason: str
 
 
@@ -109,9 +108,13 @@ def cache(probe: bool = False) -> Cache:
     """Return the cache directory in use: the user's, or a temporary one with the reason why the user's cannot be used.
 
     With ``probe`` a small file is written first, so that a full disk is noticed.
+
+    Raises
+    ------
+    CompilerError
+        If no directory can be used, not even a temporary one.
     """
     if probe:
-        # notices a full disk
         _keep(_text_name("probe"), b"")
     if _temporary.path is not None:
         return Cache(_temporary.path, _temporary.reason)
@@ -135,7 +138,8 @@ def build(source: str, name: str, flags: tuple[str, ...] = FLAGS) -> Path:
     Raises
     ------
     CompilerError
-        If there is no compiler, or if it rejects the source or takes too long; the message quotes the first error.
+        If there is no compiler, if it rejects the source (the message quotes the first error) or takes too long, or if
+        the library cannot be written to any directory.
     """
     tool = compiler()
     library = built(source, name, flags)
@@ -156,7 +160,10 @@ def built(source: str, name: str, flags: tuple[str, ...] = FLAGS) -> Path | None
 
 
 class Building:
-    """The compilation of a library in another thread; :meth:`path` waits for its end."""
+    """The compilation of a library in another thread, unless the cache has the library; :meth:`path` waits for its end.
+
+    CompilerError is raised at once if there is no compiler.
+    """
 
     def __init__(self, source: str, name: str, flags: tuple[str, ...] = FLAGS) -> None:
         self._path: Path | None = built(source, name, flags)
@@ -173,7 +180,7 @@ class Building:
             self._error = error
 
     def wait(self) -> None:
-        """Wait until the compiler has ended, successfully or not."""
+        """Wait until the compiler has ended, successfully or not; Ctrl-C kills all running compilers."""
         if self._thread is not None:
             try:
                 self._thread.join()
@@ -231,12 +238,11 @@ def store(key: str, text: str) -> None:
     try:
         _keep(_text_name(key), f"{_digest(text)}\n{text}".encode())
     except CompilerError:
-        # only for this process
         _temporary.texts[key] = text
 
 
 def fetch(key: str) -> str | None:
-    """Return the text that is stored in the cache under a key, or None if the text is missing or damaged."""
+    """Return the text that :func:`store` has stored under a key, or None if the text is missing or damaged."""
     for directory in _directories():
         content = _read(directory / _text_name(key))
         if content is not None:
@@ -247,7 +253,10 @@ def fetch(key: str) -> str | None:
 
 
 def clear() -> tuple[Path, ...]:
-    """Remove all files that symrot wrote into the cache, and return their paths; other files are not touched."""
+    """Remove all files that symrot wrote into the cache directories in use, and return their paths.
+
+    Other files are not touched.
+    """
     removed = []
     for directory in _directories():
         for path in sorted(directory.iterdir()):
@@ -331,7 +340,7 @@ def _replace(path: Path, content: bytes) -> None:
 def _keep(name: str, content: bytes) -> Path:
     """Write ``content`` to the file ``name`` of the cache, and return its path.
 
-    If that fails, the file is written to the temporary directory.
+    If that fails, the file is written to the temporary directory; if this fails too, CompilerError is raised.
     """
     if _temporary.path is None:
         directory, reason = user_directory()

@@ -1,4 +1,4 @@
-"""Runs of a C compiler with a time limit; the compiler and its child processes are killed if this process is stopped.
+"""Runs of a C compiler with a time limit; after it, or after Ctrl-C, the compiler and its child processes are killed.
 
 This module is imported only if something has to be compiled; mostly the library is already in the cache.
 """
@@ -63,7 +63,7 @@ def run_compiler(command: Sequence[str], flags: Sequence[str], source: str, outp
 
 
 def stop_all() -> None:
-    """Kill all running compilers, and prevent waiting threads from starting further compilers."""
+    """Kill all running compilers; a compiler that a waiting thread starts afterwards is killed at once."""
     for thread in enumerate_threads():
         if thread.name == WAITING:
             thread.name = STOPPED

@@ -116,7 +116,7 @@ def _shared_group(group: int) -> bool:
 def user_directory() -> tuple[Path, str]:
     """Return the user's cache directory and the reason why it cannot be used; the reason is "" if it can be used.
 
-    If the directory does not exist, it is created.
+    If the directory does not exist, it is created; if others have access to it, this access is withdrawn.
     """
     try:
         directory = _cache_directory() / CACHE_SUBDIR

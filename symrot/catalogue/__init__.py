@@ -92,7 +92,7 @@ def module_of(name: str) -> str:
 
 
 def require_name(name: str) -> None:
-    """Raise InputError, with the most similar name, if there is no derivation called ``name``."""
+    """Raise InputError if no derivation is called ``name``; the message has the most similar name, or else all."""
     if name not in names():
         hint = nearest(name, names())
         known = "" if hint else f", one of {', '.join(names())}"

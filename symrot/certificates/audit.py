@@ -97,8 +97,7 @@ def _refused(text: str) -> Any:
 def audit(path: Path, symrot_statement: Callable[[Data], Data | None]) -> tuple[Data, list[str]]:
     """Check every statement of a certificate, except its verdicts on object code.
 
-    Return the content of the certificate, and a list of sentences: one for each check that was passed, and one for each
-    check that was not made.
+    Return the content of the certificate, and a list of sentences that say what was checked and what was not.
 
     Parameters
     ----------
@@ -110,8 +109,10 @@ def audit(path: Path, symrot_statement: Callable[[Data], Data | None]) -> tuple[
 
     Raises
     ------
+    InputError
+        If the certificate cannot be read.
     CertificateError
-        If a statement does not hold; the message names the first such statement.
+        If the file is not a certificate, or a check fails; the message names the first check that fails.
     """
     data = load_certificate(path)
     try:
@@ -127,12 +128,12 @@ def audit(path: Path, symrot_statement: Callable[[Data], Data | None]) -> tuple[
 
 
 def _audited(path: Path, data: Data, symrot_statement: Callable[[Data], Data | None]) -> list[str]:
-    """Check a certificate, parsed as ``data``, with the kernel's header and C text; return a sentence for each check.
+    """Check a certificate, parsed as ``data``, with the kernel's header and C text; return sentences about the checks.
 
     The statements of the certificate are compared with those that ``symrot_statement`` derives, as in :func:`audit`.
+    CertificateError is raised at the first check that fails.
     """
     name = data["kernel"]
-    # CertificateError is raised at the first check that fails
     source, header = ((path.parent / f"{name}{end}").read_text(encoding="utf-8") for end in (".c", ".h"))
     check_header(header, source, name)
     _check_readback(data, source)
@@ -160,11 +161,13 @@ _READERS = {".js": compare_javascript, "_jax.py": compare_jax}
 
 
 def _check_others(path: Path, data: Data, source: str) -> list[str]:
-    """Check the JavaScript and JAX files of a kernel against its C text; return a sentence for each file."""
+    """Check the JavaScript and JAX files of a kernel against its C text; return a sentence for each file.
+
+    A file that does not exist is left out.
+    """
     findings = []
     for ending, compare in _READERS.items():
         for file in data["files"]:
-            # a file that is not in the certificate's folder is left out
             if file.endswith(ending) and (path.parent / file).is_file():
                 compare((path.parent / file).read_text(encoding="utf-8"), data["kernel"], source, file)
                 findings.append(f"{file} performs the operations of the C text")
@@ -185,8 +188,10 @@ def _unchecked_objects(data: Data) -> list[str]:
 
 
 def _compare(path: Path, data: Mapping[str, Any], statement: Mapping[str, Any]) -> None:
-    """Raise CertificateError unless each section in ``statement`` equals the section of that name in ``data``."""
-    # ``data``: the certificate; ``statement``: the sections that symrot derives now
+    """Raise CertificateError unless each section that symrot derives now equals that section of the certificate.
+
+    ``data`` is the certificate; ``statement`` maps the names of sections to what symrot derives.
+    """
     for name, value in statement.items():
         if json.dumps(data[name]) != json.dumps(value):
             raise CertificateError(

@@ -89,7 +89,9 @@ class KernelUnderTest:
 
 
 def certificate_text(kernel: KernelUnderTest) -> str:
-    """Return the text of a kernel's certificate, in which every statement is proven.
+    """Return the text of a kernel's certificate, with proofs of the kernel's laws and of what its C text computes.
+
+    The cache of compiled C also stores the proofs.
 
     Raises
     ------
@@ -258,7 +260,7 @@ def seal(data: Data) -> str:
     return text_digest(json.dumps(bare, sort_keys=True, separators=(",", ":")))
 
 
-OPTIONAL_SECTIONS: dict[str, Callable[[Data, Any], bool]] = {  # section -> whether it belongs to a certificate
+OPTIONAL_SECTIONS: dict[str, Callable[[Data, Any], bool]] = {  # section -> is it about the C text of a certificate?
     "rounding": lambda data, section: (
         [part["operations_sha256"] for part in section["precisions"]]
         == [function["digest"] for function in data["readback"].values()]
@@ -270,7 +272,7 @@ OPTIONAL_SECTIONS: dict[str, Callable[[Data, Any], bool]] = {  # section -> whet
 def with_sections(text: str, sections: Mapping[str, Any]) -> str:
     """Return the certificate ``text`` with optional sections, such as ``"rounding"``, added from ``sections``.
 
-    A section that is not about the C text of this certificate, but about an earlier version, is left out.
+    A section that is malformed, or not about the C text of this certificate but about an earlier version, is left out.
     """
     data = json.loads(text)
     for name, is_about in OPTIONAL_SECTIONS.items():

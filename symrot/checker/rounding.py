@@ -1,5 +1,6 @@
 """Claims with a rounded decimal number, such as ``1500*2*pi/60 == 157.08``: true if the value rounds to the number."""
 
+import math
 import re
 from dataclasses import replace
 from fractions import Fraction
@@ -11,6 +12,9 @@ from symrot.checker.verdict import Diagnosis, Repair, Verdict
 from symrot.exact.intervals import enclosure
 
 __all__ = ["rounded_value", "with_rounding"]
+
+LONG_WHOLE = re.compile(r"[1-9]\d+[1-9]")
+"""Pattern of an integer that may be a rounded number; others, such as 3 and 1500, are exact."""
 
 
 def with_rounding(claim: Claim, verdict: Verdict) -> Verdict:
@@ -34,8 +38,9 @@ def with_rounding(claim: Claim, verdict: Verdict) -> Verdict:
 def rounded_value(claim: Claim) -> str:
     """Return the value of ``claim.value`` rounded to as many decimal places as ``claim.printed`` has; "" if uncertain.
 
-    ``claim.printed`` is the number that the document prints. Return "" also if the value, or the power of ten in the
-    printed number, exceeds the range of doubles.
+    ``claim.printed`` is the number that the document prints. A value that would round to zero gets as many significant
+    digits as this number has: 0.05 for 5 % and a printed 0.5. Return "" if the printed number then has a power of ten,
+    or if this power or the value exceeds the range of doubles.
     """
     assert claim.value is not None
     interval = enclosure(claim.interpreter().read(claim.value))
@@ -44,9 +49,14 @@ def rounded_value(claim: Claim) -> str:
     mantissa, _, power = claim.printed.strip().lower().partition("e")
     places = len(mantissa.partition(".")[2])
     try:
-        right = f"{float(interval.mid) / 10.0 ** int(power or 0):.{places}f}" + (f"e{power}" if power else "")
+        middle = float(interval.mid) / 10.0 ** int(power or 0)
     except ArithmeticError:  # beyond the range of double precision
         return ""
+    if middle and not re.search("[1-9]", f"{middle:.{places}f}"):
+        if power:
+            return ""
+        places = len(re.sub(r"^-?[0.]+|\.", "", mantissa)) - 1 - math.floor(math.log10(abs(middle)))
+    right = f"{middle:.{places}f}" + (f"e{power}" if power else "")
     return right if decide_value(replace(claim, printed=right)).verdict == "true" else ""
 
 
@@ -84,7 +94,7 @@ def _long_whole(node: Node, source: str, value: Node) -> str:
         (part.kind == "number" and "." in source[part.span[0] : part.span[1]])
         for _, part in walk(value)
     )  # fmt: skip
-    return sign + digits if inner.kind == "number" and is_rough and re.fullmatch(r"[1-9]\d+[1-9]", digits) else ""
+    return sign + digits if inner.kind == "number" and is_rough and LONG_WHOLE.fullmatch(digits) else ""
 
 
 def _is_constant(node: Node) -> bool:
@@ -111,14 +121,20 @@ def _rounded(claim: Claim, verdict: Verdict, value: Node, digits: str, side: Nod
         note = f"to the digits given: the value rounds to {digits}"
         return Verdict("true", dimension=verdict.dimension, notes=(*verdict.notes, note), seconds=verdict.seconds)
     right = rounded_value(worked)
-    if not right and decision.verdict == "false":  # it has more digits than can be written here
+    if "." not in right and not LONG_WHOLE.fullmatch(right.removeprefix("-")):
+        right = ""  # a short integer is an exact number
+    if not right and decision.verdict == "false":  # the right digits cannot be written in its place
         return replace(verdict, verdict="false", counterexample=decision.counterexample, reason="")
     if not right:
         return verdict
     diagnosis = Diagnosis("digits", f"a decimal number has a wrong digit: the value rounds to {right}, not to {digits}")
     start, end = _scientific(side.args[0] if side.kind == "neg" else side)[0].span
-    digits_only = right.partition("e")[0] if end != side.span[1] else right
-    written = digits_only.removeprefix("-") if side.kind == "neg" else digits_only
+    mantissa, _, power = right.partition("e")
+    is_whole = power and Fraction(right).denominator == 1  # 0.16e3 would be printed as the exact number 160
+    written = mantissa if end != side.span[1] else f"{mantissa}*10**{power}" if is_whole else right
+    if side.kind == "neg":  # the sign is written again, since it may be wrong
+        is_bracketed = source[side.span[0] : start].strip() not in ("-", "−")
+        start, end, written = (*side.span, right) if is_bracketed else (side.span[0], end, written)
     repair = Repair(source[:start] + written + source[end:], "digits", 1.0)
     witness = decision.counterexample
     if witness is not None and side is claim.relation[1]:  # type: ignore[index]

@@ -29,7 +29,9 @@ LARGEST_WORK = 30_000_000
 """Number of triangles times number of integrals up to which exact integrals are an alternative to doubles."""
 
 LARGEST_ERROR = Fraction(1, 10**12)
-"""Largest relative error of results in doubles; if the bound is larger, the integrals are computed exactly."""
+"""Largest relative error of results in doubles; if the bound is larger, the integrals are computed exactly.
+
+A mesh with more than LARGEST_WORK integrals is then refused."""
 
 LARGEST_SHARE = Fraction(1, 10**6)
 """Largest rounding error of second moments in doubles, relative to the smallest principal second moment.
@@ -41,7 +43,7 @@ Rows = tuple[tuple[Any, ...], ...]
 
 
 class MeshBody(NamedTuple):
-    """The mass properties of a mesh, and its surface in the unit of the file."""
+    """The mass properties of a mesh, its surface in the unit of the file, and the length ``scale`` of this unit, m."""
 
     inertial: Inertial
     surface: Surface
@@ -88,8 +90,8 @@ def mesh(path: str | Path, *, mass: Any = None, density: Any = None, scale: Any 
     Raises
     ------
     InputError
-        If trimesh is not installed, if the file is not a mesh, or if the mesh has holes, normals that point inwards,
-        no volume, or triangles that cross, as far as the tests detect this.
+        If an argument is not valid, if trimesh is needed and not installed, if the file is not a mesh, or if the mesh
+        has holes, normals that point inwards, no volume, or triangles that cross, as far as the tests detect this.
 
     Examples
     --------
@@ -131,7 +133,8 @@ def polyhedron(surface: Surface, name: str, where: str, mass: Any, density: Any,
     Raises
     ------
     InputError
-        If the surface is not the boundary of a body.
+        If the surface is not the boundary of a body, if the mass or density is not valid, or if the mesh is too large
+        for exact integrals and doubles are not accurate enough.
     """
     require_closed(surface, where)
     if mass is not None:
@@ -264,7 +267,7 @@ def _result(body: _Body, amount: Fraction | None, exact: bool) -> tuple[Fraction
 
 
 def _require_volume(moments: VolumeMoments, unit: Fraction, where: str) -> None:
-    """Raise InputError if the volume of a mesh is zero, or negative by more than its error bound.
+    """Raise InputError if the volume of a mesh is exactly zero, or negative by more than its error bound.
 
     A negative volume means normals that point inwards.
     """

@@ -1,4 +1,4 @@
-"""Reading of mesh files by trimesh: vertices and triangles as arrays, and one clear error for each unusable file."""
+"""Reading of mesh files, mostly by trimesh: vertices and triangles as arrays, a clear error for an unusable file."""
 
 from io import BytesIO
 from pathlib import Path
@@ -37,8 +37,8 @@ def read_surface(path: Path, where: str) -> Surface:
     Raises
     ------
     InputError
-        If trimesh is not installed, or if the file cannot be read, has no triangles, or has coordinates that are not
-        finite or beyond 1e30.
+        If the suffix is not in SUFFIXES, if trimesh is needed and not installed, or if the file cannot be read, is too
+        large, has no triangles, or has coordinates that are not finite or of a magnitude beyond 1e30.
     """
     suffix = path.suffix.lower()
     if suffix not in SUFFIXES:

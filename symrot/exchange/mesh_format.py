@@ -32,7 +32,8 @@ class Facts(NamedTuple):
 def _stl(content: bytes) -> Facts:
     """Return the facts about an STL file, given its ``content``: its number of triangles.
 
-    InputError is raised for a text that does not end with ``endsolid``.
+    InputError is raised if the file is neither binary with the length that this number requires, nor a text whose last
+    line begins with ``endsolid``.
     """
     count = int.from_bytes(content[80:84], "little")
     if len(content) == 84 + 50 * count:
@@ -47,7 +48,7 @@ def _stl(content: bytes) -> Facts:
 def _obj(content: bytes) -> Facts:
     """Return the facts about an OBJ file: into how many triangles its polygons are divided, and how many are not flat.
 
-    InputError is raised for lines that trimesh would ignore or misread.
+    InputError is raised for lines that trimesh would ignore or misread, such as free-form surfaces.
     """
     count, form, coordinates, polygons = 0, 0, array("d"), list[list[str]]()
     for number, line in enumerate(content.decode("latin-1").replace("\\\n", " ").splitlines(), 1):

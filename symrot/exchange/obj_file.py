@@ -21,7 +21,7 @@ _BACKWARDS = re.compile(rb"^[ \t]*f[ \t](?:[^\n#]*[ \t])?(?:-\d|0+(?![\d.]))", r
 def refers_backwards(content: bytes) -> bool:
     """Return whether a polygon of an OBJ file has a corner with a number that is not positive, such as ``f -3 -2 -1``.
 
-    Such numbers count vertices backwards from the line of the polygon.
+    Negative numbers count vertices backwards from the line of the polygon.
     """
     return _BACKWARDS.search(content.replace(b"\r\n", b"\n").replace(b"\\\n", b"")) is not None
 
@@ -60,9 +60,9 @@ def read_plain_obj(content: bytes) -> tuple[NDArray[np.float64], NDArray[np.int6
 
 
 def _numbers(lines: NDArray[np.uint8], letter: bytes, kind: Any) -> NDArray[Any] | None:
-    """Return the numbers of lines that start with ``letter``, with a row for each of the three items of a line.
+    """Return the numbers of lines that start with ``letter``, with a row for each of the three words of a line.
 
-    ``f 1/4 3/1 2/2`` gives the rows (1, 4), (3, 1), (2, 2). None unless all lines have the same form.
+    ``f 1/4 3/1 2/2`` gives the rows (1, 4), (3, 1), (2, 2). None unless all lines have the same form, and only numbers.
     """
     separators = lines[(lines == _SPACE) | (lines == _NEWLINE) | (lines == _SLASH)]
     size = int((separators == _NEWLINE).argmax()) + 1 if len(separators) else 1

@@ -1,6 +1,7 @@
-"""Exact rotation matrices from the notations of robot files.
+"""Rotation matrices from the notations of robot files as Fractions, and angles and quaternions of matrices as doubles.
 
-Each matrix maps components in a child frame to components in its parent frame.
+Each matrix maps components in a child frame to components in its parent frame. Entries that are not rational are
+rounded far beyond the digits of a double.
 """
 
 from collections.abc import Callable, Sequence
@@ -111,7 +112,7 @@ ORIENTATIONS: dict[str, tuple[int, Callable[[Numbers, Angles], Tensor]]] = {
     "xyaxes": (6, _of_two_axes),
     "zaxis": (3, _of_z_axis),
 }
-"""Attribute of MJCF -> how many numbers it has, and the function from them to a rotation matrix."""
+"""Attribute of MJCF -> (how many numbers it has, function from these numbers and the file's settings to a matrix)."""
 
 
 def roll_pitch_yaw_of(rotation: Tensor) -> tuple[float, float, float]:

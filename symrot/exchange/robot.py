@@ -210,7 +210,7 @@ def _require_body(inertial: Inertial) -> None:
 def _numbers(text: str | None, count: int, place: str) -> tuple[Fraction, ...]:
     """Return the numbers in the text of an attribute or element; ``place`` names it in error messages.
 
-    Raise InputError unless there are ``count`` of them.
+    Raise InputError unless there are ``count`` of them, each zero or of a magnitude from 1e-100 to 1e100.
     """
     words = (text or "").split()
     if "$" in (text or ""):
@@ -326,9 +326,9 @@ def _read_sdf(element: Element, root: Element) -> Inertial:
 
 
 def _pose(pose: Element | None) -> tuple[tuple[Fraction, ...], Tensor | None]:
-    """Return the position and the rotation matrix (None without rotation) of an element <pose> of SDF.
+    """Return the position and the rotation matrix of an element <pose> of SDF.
 
-    If ``pose`` is None, the position is zero.
+    The matrix is None if all angles are zero. If ``pose`` is None, the position is zero and the matrix None.
     """
     if pose is None:
         return (Fraction(0),) * 3, None

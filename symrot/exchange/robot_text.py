@@ -18,7 +18,9 @@ from symrot.inertia.principal import Principal
 __all__ = ["inertial_text", "write_link"]
 
 ROUNDING = Fraction(1, 10**14)
-"""Largest relative difference of a number that was written and read back."""
+"""Largest difference of a mass property that was written and read back.
+
+It is relative to the mass, the largest coordinate of the centre of mass, or the largest entry of the tensor."""
 
 
 def write_link(source: str | Path, name: str, inertial: Inertial, target: str | Path | None = None) -> Path:
@@ -43,7 +45,8 @@ def write_link(source: str | Path, name: str, inertial: Inertial, target: str | 
     Raises
     ------
     InputError
-        If there is not exactly one link of this name, or if the file cannot be written.
+        If ``source`` is no robot file in UTF-8, if there is not exactly one link of this name, if other parts of the
+        file would change the new values, or if the file cannot be written.
 
     Examples
     --------

@@ -113,7 +113,10 @@ def require_closed(surface: Surface, where: str) -> None:
 
 
 def _defect(surface: Surface) -> str:
-    """Return the clause of an error message that counts the edges at which a surface is open or changes orientation."""
+    """Return the clause of an error message that counts the edges at which a surface is open.
+
+    If it is open nowhere, the clause counts the edges at which its orientation changes.
+    """
     start, end = _edges(surface)
     keys, number = np.unique(_undirected(start, end, len(surface.vertices)), return_inverse=True)
     balance = np.bincount(number, weights=np.sign(end - start)).astype(np.int64)

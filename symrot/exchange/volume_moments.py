@@ -147,7 +147,10 @@ def _sum(terms: NDArray[np.float64]) -> float:
 
 
 def _bound(powers: Exponents) -> float:
-    """Return a bound of the relative error of one term of an integral, from the number of its rounded operations."""
+    """Return a bound of the error of an integral, relative to the sum of the magnitudes of all its terms.
+
+    The bound follows from the number of rounded operations of one term.
+    """
     # determinant 8 (edges and corners are differences), coefficient 5 k + 9, product 1, sum BLOCK + 1
     count = 8 + 5 * sum(powers) + 9 + 1 + BLOCK + 1
     return count * ROUNDING * 1.001

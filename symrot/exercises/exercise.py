@@ -22,7 +22,9 @@ SCHEMA = 1
 """The version of the JSON data of exercises."""
 
 DRAWS = 24
-"""Number of times that random numbers are chosen for an exercise; the choice with the shortest answers is used."""
+"""Number of random choices of numbers for an exercise, of which the one with the shortest answers is used.
+
+There are more choices only if none of these suits the problem."""
 
 MOST_DRAWS = 10_000
 """Number of random choices after which ProofError is raised, if none of them suits the problem."""

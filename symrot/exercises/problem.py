@@ -5,9 +5,9 @@ from dataclasses import dataclass
 from random import Random
 from typing import Any
 
-from sympy import Add, Expr, Mul, Symbol
+from sympy import Add, Expr, Symbol
 
-__all__ = ["Asked", "Line", "Problem", "Quantity", "Template", "chain", "quantity", "written_product", "written_sum"]
+__all__ = ["Asked", "Line", "Problem", "Quantity", "Template", "chain", "quantity", "written_sum"]
 
 
 @dataclass(frozen=True)
@@ -40,11 +40,6 @@ def quantity(symbol: Symbol, numbers: str, unit: str, words: str) -> Quantity:
 def written_sum(*terms: Any) -> Expr:
     """Return a SymPy sum that is not simplified, so that it is printed term by term: ``m*R**2/2 + m*R**2``."""
     return Add(*terms, evaluate=False)
-
-
-def written_product(*factors: Any) -> Expr:
-    """Return a SymPy product that is not simplified, so that it is printed factor by factor."""
-    return Mul(*factors, evaluate=False)
 
 
 @dataclass(frozen=True)

@@ -120,7 +120,7 @@ def exercise(topic: str | Sequence[str] = "", *, seed: int = 0, count: int = 1) 
     ----------
     topic : str or sequence of str
         A topic or the name of a template, see ``symrot exercise --list``, or several of them; an empty text means all
-        topics. The sheet is in the order of the topics.
+        topics. The sheet is in the order of the topics; with all topics, the seed decides which of them is the first.
     seed : int
         Seed of the random choices. Another seed usually gives other numbers and begins with another template; the same
         seed gives the same exercises on every machine.

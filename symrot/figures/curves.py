@@ -26,7 +26,10 @@ def unit(vector: ArrayLike) -> Floats:
 
 
 def basis(normal: ArrayLike) -> tuple[Floats, Floats]:
-    """Return two unit vectors that form a right-handed triad with ``normal``; the second points upward if possible."""
+    """Return two unit vectors that form a right-handed triad with ``normal``.
+
+    The second points upward, unless the normal is nearly vertical.
+    """
     n = unit(normal)
     helper = np.array([0.0, 0.0, 1.0]) if abs(n[2]) < 0.99 else np.array([1.0, 0.0, 0.0])
     first = unit(np.cross(helper, n))
@@ -56,7 +59,7 @@ def rotated(point: ArrayLike, axis: ArrayLike, angle: float, count: int = 41) ->
 def arc_between(start: ArrayLike, end: ArrayLike, radius: float, centre: ArrayLike = (0, 0, 0)) -> Floats:
     """Return points of the shorter arc from the direction ``start`` to the direction ``end``, shape (n, 3).
 
-    The arc belongs to the circle of the given radius about ``centre``.
+    The arc belongs to the circle of the given radius about ``centre``. The directions must not be parallel.
     """
     a, b = unit(start), unit(end)
     across = unit(b - a * (a @ b))
@@ -86,14 +89,17 @@ def clear_of(shape: Floats, points: Floats, view: View) -> NDArray[np.bool_]:
 
 
 def turning(start: ArrayLike, end: ArrayLike) -> Floats:
-    """Return the unit quaternion of the shortest rotation that maps the direction ``start`` to ``end``."""
+    """Return the unit quaternion of the shortest rotation that maps the direction ``start`` to ``end``.
+
+    The directions must not be parallel.
+    """
     a, b = unit(start), unit(end)
     angle = float(np.arccos(np.clip(a @ b, -1, 1)))
     return np.asarray(axis_angle_to_quaternion(unit(np.cross(a, b)), angle), dtype=float)
 
 
 def cone(axis: ArrayLike, half_angle: float, length: float, view: View) -> tuple[Floats, list[Floats]]:
-    """Return the rim of a cone with its apex at the origin, and the two lines of its visible outline.
+    """Return the rim of a cone with its apex at the origin and sides of ``length``, and two lines: its visible outline.
 
     There are no such lines if the line of sight lies inside the cone.
     """

@@ -41,7 +41,8 @@ def free_motion(moments: ArrayLike, omega: ArrayLike, times: Floats, quaternion:
 def one_period(moments: ArrayLike, start: Floats) -> Trajectory:
     """Return a free motion over one period of omega, whose initial value is ``start``, rad/s, in body components.
 
-    Exactly one component of ``start`` must be zero, because the zeros of this component mark the period.
+    Exactly one component of ``start`` must be zero, and its sign must change: the zeros of this component mark the
+    period.
     """
     (zero,) = np.flatnonzero(start == 0.0)
     times = np.linspace(0.0, 80.0, 4001)
@@ -160,8 +161,10 @@ def momentum_sphere() -> Picture:
 
 
 def cone_vectors(moments: tuple[float, float], nutation: float) -> tuple[Floats, Floats, Floats]:
-    """Return the directions of L, omega and the symmetry axis of a free symmetric body, in space components."""
-    # nutation, rad: the angle from L to the symmetry axis
+    """Return the directions of L, omega and the symmetry axis of a free symmetric body, in space components.
+
+    ``moments`` are those across and along the axis, kg m^2; ``nutation`` is the angle from L to the axis, rad.
+    """
     a, c = moments
     momentum = np.array([np.sin(nutation), 0.0, np.cos(nutation)])  # in the body, |L| = 1
     start = momentum / np.array([a, a, c])

@@ -17,8 +17,8 @@ from symrot.figures.view import Floats, Plane, Points, View
 __all__ = ["COLOURS", "STYLE", "Picture"]
 
 MARGIN = 8.0
-ARROW, HALF_WIDTH = 9.0, 3.4  # length and half the width of the head of an arrow, points
-LETTER, LINE = 7.6, 15.0  # width of a letter and height of a line of a label, points, from above
+ARROW, HALF_WIDTH = 9.0, 3.4  # length and half the width of the head of an arrow, SVG units
+LETTER, LINE = 7.6, 15.0  # upper bounds of the width of a letter and of the height of a label, SVG units
 NUDGE = 3.7e-5  # keeps coordinates such as 0.125 away from the border between two roundings
 
 COLOURS = {  # name: (on a light page, on a dark page)

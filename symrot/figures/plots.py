@@ -18,7 +18,7 @@ class Axes:
     x, y : (float, float)
         The limits of the two variables.
     size : (float, float)
-        Width and height, points.
+        Width and height, SVG units.
     corner : (float, float)
         The position of the rectangle's lower left corner in the picture.
     """
@@ -40,9 +40,9 @@ class Axes:
         self.picture.arrow(self.plane, (left, low), (left, high + 0.06 * (high - low)), y_label, "soft")
 
     def curve(self, x: Floats, y: Floats, style: str = "blue thick", label: str = "", at: float = 1.0) -> None:
-        """Draw a curve through the points (x, y), with a label above the fraction ``at`` of its length.
+        """Draw a curve through the points (x, y), with a label above the point at the fraction ``at`` of all points.
 
-        With ``at = 1``, the default, the label is to the right of its end.
+        With ``at = 1``, the default, the label is to the right of the last point that is drawn.
         """
         # points above or below the rectangle are left out
         inside = (y >= self.y[0]) & (y <= self.y[1])
@@ -61,7 +61,10 @@ class Axes:
             self.picture.label(self.plane, (self.x[1], y), label, (16, 0))
 
     def upright(self, x: float, label: str = "", low: float | None = None, high: float | None = None) -> None:
-        """Draw a vertical line at ``x``, from ``low`` to ``high`` or over the whole height, with a label below it."""
+        """Draw a vertical line at ``x``, from ``low`` to ``high`` or over the whole height.
+
+        Its label is below the rectangle.
+        """
         bottom, top = self.y[0] if low is None else low, self.y[1] if high is None else high
         self.picture.curve(self.plane, np.array([[x, bottom], [x, top]]), "soft dashed")
         if label:

@@ -27,9 +27,9 @@ SPECIAL: dict[str, dict[str, Any]] = {
     "ellipsoid": {"a": 1.1, "b": 0.85, "c": 0.6},
 }
 VIEW = View(azimuth=32, elevation=28, scale=72)
-FINE = {True: 49, False: 2}  # samples of a coordinate: an angle, or a length or share, in which a map is linear
+FINE = {True: 49, False: 2}  # samples of a coordinate: 49 of an angle, 2 of a length or fraction (the map is linear)
 AHEAD = 0.012  # m: a triangle hides a point only if it lies farther than this in front of it
-ONCE_AROUND = 6.0
+ONCE_AROUND = 6.0  # a coordinate with a larger range is an angle that goes once around, without ends
 
 
 @dataclass(frozen=True)

@@ -283,7 +283,10 @@ def _satellite(picture: Picture, plane: Plane, place: Floats, half: float) -> No
 
 
 def tidal_force(offset: Floats, radius: Floats) -> Floats:
-    """Return the tidal force on a unit mass at ``offset`` from a satellite's centre, to first order in the offset."""
+    """Return the tidal force on a unit mass at ``offset`` from a satellite's centre, to first order in the offset.
+
+    ``radius`` is the position of this centre; the planet at the origin attracts with 1/distance^2.
+    """
     step = 1e-6
 
     def pull(place: Floats) -> Floats:

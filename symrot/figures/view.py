@@ -12,7 +12,7 @@ __all__ = ["Floats", "Plane", "Points", "View"]
 
 Floats = NDArray[np.float64]
 Points = ArrayLike | Sequence[Any]
-"""Rows of coordinates."""
+"""Coordinates of points, a row for each point."""
 
 
 @dataclass(frozen=True)
@@ -25,7 +25,7 @@ class View:
         Direction from the origin toward the eye. ``azimuth`` is measured from axis 1 toward axis 2 in the horizontal
         plane, ``elevation`` from this plane upward.
     scale : float
-        Points of the picture for each unit of length.
+        SVG units for each unit of length.
     origin : (float, float)
         Place of the origin in the picture; y is counted downward.
     """
@@ -57,7 +57,7 @@ class View:
 
 @dataclass(frozen=True)
 class Plane:
-    """A view of a plane in a picture: x to the right and y upward, with one scale or two."""
+    """A view of a plane in a picture: x to the right and y upward; ``scale_y``, if given, is another scale for y."""
 
     scale: float = 100.0
     origin: tuple[float, float] = (0.0, 0.0)

@@ -1,6 +1,6 @@
 """Reading of files of unknown origin: only regular files up to a size limit, so that no pipe or device blocks.
 
-symrot opens all scenes, claim files, tables, certificates and studies here. Standard library only.
+symrot opens all scenes, claim files, tables, certificates, studies, robot files and meshes here. Standard library only.
 """
 
 import os
@@ -28,6 +28,8 @@ def refuse_special(path: Path) -> os.stat_result:
     OSError
         If the path is a folder, pipe, socket or device, or if the file does not exist. The attribute ``strerror``
         completes a message "expected .., got ..".
+    ValueError
+        If the name of the file contains a NUL character.
     """
     status = path.stat()
     _refuse_mode(status.st_mode)

@@ -13,12 +13,13 @@ __all__ = ["check_target", "write"]
 def check_target(path: Path, suffixes: Sequence[str], option: str) -> None:
     """Raise InputError if a file cannot be written at ``path``; commands call this before they compute the content.
 
+    ``option``, such as ``--out``, is named in messages.
+
     Raises
     ------
     InputError
         If the suffix is unknown, the folder is missing, the path is a folder, or a permission is missing.
     """
-    # ``option``, such as --out, is named in messages
     if path.suffix.lower() not in suffixes:
         raise InputError(f"{option}: expected a file name that ends in {', '.join(suffixes)}, got {str(path)!r}")
     try:
@@ -46,7 +47,7 @@ def write(path: Path, content: Callable[[BinaryIO], object]) -> None:
     Raises
     ------
     InputError
-        If writing fails; an existing file at ``path`` is then unchanged.
+        If writing fails with an OSError; an existing file at ``path`` is then unchanged.
     """
     target = path.resolve()  # a link keeps pointing to its file
     # a temporary file in the same folder, renamed when complete

@@ -38,6 +38,7 @@ LARGEST = Fraction(2) ** 1024
 """Numbers of this size and above exceed the range of a double and are rejected."""
 
 SMALLEST = 1 / Fraction(2) ** 1022
+"""Numbers other than zero below this size, that of the smallest normal double, are rejected."""
 
 EXPECTATION = 'a number, such as 2, 0.5, "1/3", "sqrt(2)" or "pi/6"'
 
@@ -99,7 +100,10 @@ PI: Fraction = _pi(BITS)
 
 
 def sqrt(value: Fraction) -> Fraction:
-    """Return the square root of ``value`` >= 0: exact if it is rational, else with a relative error below 2^-320."""
+    """Return the square root of ``value`` >= 0: exact if it is rational, else with a relative error below 2^-320.
+
+    Raise ValueError if ``value`` is negative.
+    """
     if value < 0:
         raise ValueError(f"the square root of the negative number {show(value)} is not real")
     numerator, denominator = isqrt(value.numerator), isqrt(value.denominator)

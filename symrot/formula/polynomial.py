@@ -14,7 +14,7 @@ __all__ = [
     "reduce_circular", "sine", "square_root",
 ]  # fmt: skip
 
-Monomial = tuple[tuple[Any, int], ...]  # (generator, power > 0), ordered by generator
+Monomial = tuple[tuple[Any, int], ...]  # pairs (generator, power > 0), ordered by generator
 Term = tuple[Monomial, Fraction]
 Operand = Union["Polynomial", Fraction, int]
 

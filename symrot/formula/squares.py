@@ -12,7 +12,7 @@ MOST_TERMS = 60  # largest number of terms of a polynomial that is tested for be
 
 
 def square_under_root(radicand: Node) -> tuple[Node, Node] | None:
-    """Return (u, v) with ``radicand = u^2 v``, whose root is ``abs(u)*sqrt(v)``; None if it contains no square."""
+    """Return (u, v) with ``radicand = u^2 v``, whose root is ``abs(u)*sqrt(v)``; None if no square is found."""
     root, rest = _split(radicand)
     # a sum such as t**2 - 2*c*t + c**2 may be the square of a polynomial
     if rest != ONE and (more := _root_of_sum(rest)) is not None:
@@ -53,7 +53,7 @@ def _root_of_sum(node: Node) -> Node | None:
 
 
 def as_polynomial(node: Node, generators: dict[str, Node]) -> Polynomial | None:
-    """Return a formula as a polynomial in its symbols and function calls; None for others, such as ``1/x``.
+    """Return a formula as a polynomial in its symbols and function calls; None for ``1/x`` or a very long polynomial.
 
     ``generators`` gets an entry for each symbol and call: ``"cos(x)"`` and its formula tree.
     """
@@ -65,7 +65,6 @@ def as_polynomial(node: Node, generators: dict[str, Node]) -> Polynomial | None:
         generators[name] = node
         return generator(name)
     parts = [as_polynomial(child, generators) for child in children(node)]
-    # None too if the polynomial would be too long
     if any(part is None or len(part.terms) > MOST_TERMS for part in parts):
         return None
     first, *others = (part for part in parts if part is not None)

@@ -150,13 +150,12 @@ def placed(node: Node, values: Mapping[str, Node]) -> Node:
 
 
 def on_line(node: Node) -> tuple[Any, int]:
-    """Return (key, sign) of a formula; proportional formulas have equal keys.
+    """Return (key, sign) of a formula; proportional polynomials in symbols and function calls have equal keys.
 
-    ``t - 1`` and ``2 - 2*t`` have the same key and different signs.
+    ``t - 1`` and ``2 - 2*t`` have the same key and different signs. Any other formula is its own key, with the sign 1.
     """
     polynomial = as_polynomial(node, {})
     if polynomial is None or not polynomial.terms:
-        # not a polynomial in symbols and function calls
         return node, 1
     (_, first), *_ = terms = sorted(polynomial.terms.items())
     # formulas with one key have the same zeros, so that one search for zeros is enough for all of them

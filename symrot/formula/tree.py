@@ -335,10 +335,10 @@ _INFIX = {"+": (10, " + "), "-": (10, " - "), "*": (20, "*"), "/": (20, "/")}
 
 
 def text(node: Node, binding: int = 0, literal: Callable[[Fraction], str] = str) -> str:
-    """Return a formula as infix text with the fewest brackets that preserve its order of evaluation."""
+    """Return a formula as infix text, with brackets that preserve its order of evaluation."""
     kind = node[0]
     if kind == "number":
-        # parse converts the text back to the same tree, except that a fraction becomes a quotient
+        # parse reads the same tree from the text, except that a fraction becomes a quotient, and -2 becomes a negation
         number_text = literal(node[1])
         loose = binding > 10 and ("/" in number_text or number_text.startswith("-"))
         return f"({number_text})" if loose else number_text

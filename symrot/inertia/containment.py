@@ -18,10 +18,10 @@ __all__ = ["are_apart", "excess", "is_convex", "outside"]
 # --- walls ------------------------------------------------------------------------------------------------------------
 
 Wall = Callable[[list[Piece]], float]
-"""A function that returns by how much a convex hull reaches beyond a wall, such as the plane of a face, m.
+"""A function that returns a length, m: if it is at most 0, a convex hull does not reach beyond a wall.
 
-Its argument is the list of the disks, domes and ellipsoids (pieces) that span the hull. The result is at most 0 if the
-hull does not reach beyond the wall.
+A wall is, for example, the plane of a face. The argument is the list of the disks, domes and ellipsoids (pieces) that
+span the hull. A positive length does not prove that the hull reaches beyond the wall.
 """
 
 
@@ -132,9 +132,10 @@ def _relative(inner: Solid3, outer: Solid3) -> hulls.Pose:
 
 
 def outside(inner: Solid3, outer: Solid3) -> float:
-    """Return an upper bound of the length by which ``inner`` reaches out of ``outer``, m; at most 0 if it lies inside.
+    """Return a length, m: if it is at most 0, the shape ``inner`` is proven to lie inside ``outer``.
 
-    The bound is infinite if ``outer`` is a spherical shell or a ring, and another shape than ``inner``.
+    A positive length does not prove that ``inner`` reaches out. The length is infinite if ``outer`` is a spherical
+    shell or a ring, unless ``inner`` is the same shape at the same position.
     """
     if inner == outer:
         return 0.0

@@ -33,11 +33,11 @@ DENSITY = 0.01
 
 Users state rounded masses, so that equal densities may differ by so much."""
 
-SHARES = (0.001, 0.25, 0.5, 0.75, 0.999)  # of the coordinates of a hole, at test points
-INWARDS = 1e-6  # share of the way from the end of a hole to its middle, at test points
-MOST_PIECES = 200
-MOST_CUTS = 50
-MOST_POINTS = 200_000  # tests of a point against a part
+SHARES = (0.001, 0.25, 0.5, 0.75, 0.999)  # test points are at these fractions of the ranges of a hole's coordinates
+INWARDS = 1e-6  # fraction of the way from the end of a hole to its middle, at which a test point lies
+MOST_PIECES = 200  # largest number of pieces into which a hole is cut
+MOST_CUTS = 50  # largest number of cuts of a hole that lies within several parts
+MOST_POINTS = 200_000  # largest number of tests of a point against a part, for one hole
 PointMass = tuple[Any, Sequence[Any]]  # mass, kg; position in the axes of the body, m
 
 
@@ -97,7 +97,7 @@ def dense_part(
 
 
 def doubtful_holes(parts: Sequence[DensePart | None], names: Sequence[str]) -> tuple[str, ...]:
-    """Return a sentence for each hole of a body that can be proven neither to lie within its parts nor to reach out.
+    """Return a sentence for each hole of a body whose density could not be proven to be negative nowhere in the hole.
 
     Parameters
     ----------
@@ -196,7 +196,7 @@ def _carry(parts: Sequence[DensePart], holes: Sequence[DensePart]) -> bool:
     """Return whether the densities of ``parts`` certainly add up to at least the sum of the densities of ``holes``.
 
     All of them overlap; one per cent less is allowed (:data:`DENSITY`). A part whose density is a polynomial counts
-    only for a single hole with the same polynomial and position.
+    only for a single hole with the same density (:meth:`DensePart.has_density_of`).
     """
     filled = sum(part.density for part in parts if isinstance(part.density, Fraction))
     emptied = Fraction(0)

@@ -179,7 +179,8 @@ def density_polynomial(density: Node, values: Mapping[str, Polynomial], source: 
     Raises
     ------
     InputError
-        If the density is no polynomial in x, y, z, has a degree above LARGEST_DEGREE, or uses an unknown name.
+        If the density is no polynomial in x, y, z, has a degree above LARGEST_DEGREE or too many operations, or uses an
+        unknown name.
     """
     expected = f"{prefix(where)}expected a density that is a polynomial in x, y, z, got {show(source)}"
     try:
@@ -227,7 +228,7 @@ def moments_per_measure(region: Domain, density: Polynomial | None = None) -> tu
 
 
 def require_not_negative(density: Node, points: Iterable[Mapping[str, float]], source: object, where: str = "") -> None:
-    """Raise InputError if a density is negative at one of some points of a body.
+    """Raise InputError if a density at one of some points of a body is negative or exceeds the range of a double.
 
     A point is a mapping of x, y, z (m) and of other names in the density to numbers; ``source`` is the density as the
     user wrote it, for the message.

@@ -42,7 +42,7 @@ class Principal(NamedTuple):
 
     @property
     def needle(self) -> bool:
-        """Whether all mass lies on a line: one moment is zero."""
+        """Whether all mass lies on a line or in a point: at least one moment is zero."""
         return min(self.moments) == 0
 
 

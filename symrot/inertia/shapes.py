@@ -289,7 +289,10 @@ def check_dimensions(shape: Shape, dimensions: Mapping[str, object], where: str 
 
 
 def scalar_names(shape: Shape) -> tuple[str, ...]:
-    """Return the names of a shape's dimensions, with points split into coordinates such as ``x1, y1, z1, x2``."""
+    """Return the names of a shape's dimensions, with points split into coordinates such as ``x1, y1, z1, x2``.
+
+    The points of ``point_masses``, whose number is not fixed, are left out.
+    """
     names: list[str] = []
     for d in shape.dimensions:
         corners = [f"{axis}{n}" for n in range(1, (d.size or 0) + 1) for axis in "xyz"]
@@ -300,7 +303,8 @@ def scalar_names(shape: Shape) -> tuple[str, ...]:
 def scalars(shape: Shape, dimensions: Mapping[str, Any]) -> dict[str, Any]:
     """Return a map from the name of each scalar dimension to its number; points are split into coordinates.
 
-    The points ``((0, 0, 0), (1, 0, 0), ..)`` give ``x1 = 0, y1 = 0, z1 = 0, x2 = 1, ..``.
+    The points ``((0, 0, 0), (1, 0, 0), ..)`` give ``x1 = 0, y1 = 0, z1 = 0, x2 = 1, ..``. Raise ``ValueError`` for
+    ``point_masses``.
     """
     values: list[Any] = []
     for d in shape.dimensions:

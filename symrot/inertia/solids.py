@@ -27,12 +27,14 @@ from sympy import (
     factor,
     factor_terms,
     nan,
+    oo,
     pi,
     sin,
     sqrt,
     sstr,
     sympify,
     tan,
+    zoo,
 )
 
 import symrot
@@ -49,6 +51,7 @@ from symrot.inertia.shapes import SHAPES, Dimension, Shape, check_names, find_sh
 __all__ = ["Integral", "Solid", "closed_forms_text", "solid"]
 
 _CONSTANTS = {"pi": pi}
+_NOT_FINITE = (nan, zoo, oo, -oo)
 _FUNCTIONS = {"sqrt": sqrt, "sin": sin, "cos": cos, "tan": tan, "abs": Abs}
 _DIMENSION_SYMBOLS = {str(symbol): symbol for symbol in (*symbols.dimensions, symbols.e, *symbols.corners)}
 _MAP_ANGLES = symbols.theta, symbols.phi
@@ -113,7 +116,7 @@ class Solid:
 
     @property
     def volume(self) -> Expr:
-        """The measure of the body: the volume of a solid, the area of a surface, or the length of a curve."""
+        """The measure of the body: volume of a solid, area of a surface, length of a curve, number of point masses."""
         return self.measure
 
     @cached_property
@@ -248,7 +251,10 @@ def _scalar(value: Any) -> Expr:
 
 
 def _formula(text: str, known: Mapping[str, Expr]) -> Expr:
-    """Return the formula ``text`` as an expression, with the values of ``known`` in place of its names."""
+    """Return the formula ``text`` as an expression, with the values of ``known`` in place of its names.
+
+    Raise InputError if it has another name or too many operations.
+    """
     values = {**known, **_CONSTANTS}
     try:
         return sympify(evaluate(parse(text), values, _FUNCTIONS, _rational))
@@ -300,6 +306,8 @@ def _points(corners: Any, dimension: Dimension) -> list[tuple[Expr, ...]]:
         if isinstance(reason, InputError):
             raise
         raise InputError(f"expected {dimension.meaning} as lists of three coordinates, got {show(corners)}") from None
+    if any(coordinate.has(*_NOT_FINITE) for point in points for coordinate in point):
+        raise InputError(f"expected {dimension.meaning} with finite coordinates, got {show(corners)}")
     if len(points) != (dimension.size or len(points)):
         raise InputError(f"expected {dimension.size} points, {dimension.meaning}, got {len(points)}")
     return points
@@ -313,7 +321,7 @@ def _density(density: Any, dimensions: Mapping[str, Expr]) -> Poly:
     else:
         formula = _scalar(density)
     formula = formula.xreplace({free: axes[free.name] for free in formula.free_symbols if free.name in axes})
-    if not formula.is_polynomial(*symbols.position):
+    if formula.has(*_NOT_FINITE) or not formula.is_polynomial(*symbols.position):
         raise InputError(f"expected a density that is a polynomial in x, y, z, got {show(density)}")
     polynomial = Poly(formula, *symbols.position)
     if polynomial.total_degree() > LARGEST_DEGREE:
@@ -344,8 +352,9 @@ def solid(name: str, *, mass: Any = None, density: Any = None, **dimensions: Any
     Raises
     ------
     InputError
-        If a shape or dimension is unknown, a length, mass or density is not positive, a density is no polynomial of
-        degree up to 12, or both a mass and a density are passed.
+        If a shape or dimension is unknown, a length, mass or constant density is not positive, a density is no
+        polynomial of degree up to 12 or has no positive integral, or both a mass and a density are passed. A polynomial
+        that is negative in a part of the shape is accepted.
 
     Notes
     -----

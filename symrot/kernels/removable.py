@@ -115,7 +115,7 @@ DERIVATIVES: dict[str, Callable[[Expr], Expr]] = {
     "sine_gap": lambda x: -x * sine_bend(x),
     "tangent_gap": lambda x: -x * tangent_bend(x),
 }
-"""The functions whose derivatives kernels can compute: name -> function from x to the derivative at x."""
+"""Functions of one argument whose derivatives kernels can compute: name -> function from x to the derivative at x."""
 
 _EXPLICIT: dict[str, Callable[..., Any]] = {
     "sinc": lambda x: sin(x) / x,

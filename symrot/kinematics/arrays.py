@@ -19,7 +19,7 @@ SAFE = 1e-250, 1e250  # squared lengths between these bounds neither lose digits
 
 
 def array_of(values: Any, *shape: int, what: str) -> Array:
-    """Return ``values`` as a float64 array; raise ``InputError`` unless its last dimensions are ``shape``.
+    """Return ``values`` as a float64 array; raise ``InputError`` unless they are real, with last dimensions ``shape``.
 
     ``what`` names the values in the message, such as "a quaternion".
     """
@@ -66,8 +66,8 @@ def largest(components: Components) -> Array:
 def in_range(*components: Array) -> tuple[Components, Array]:
     """Return the components of samples and their squared lengths, as needed to normalise them.
 
-    A sample whose squares would overflow or underflow is first divided by its largest component; samples that are zero,
-    infinite or NaN become NaN.
+    A sample whose squares would overflow or underflow is first divided by its largest absolute component; samples that
+    are zero, infinite or NaN become NaN.
     """
     squares = _sum_of_squares(components)
     extreme = ~((squares > SAFE[0]) & (squares < SAFE[1]))

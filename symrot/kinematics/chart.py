@@ -201,7 +201,7 @@ class RateMatrix(ImmutableDenseMatrix):  # type: ignore[misc]
     parameters : tuple of Expr
         The parameters p, such as Euler angles in rad.
     inverse : ImmutableMatrix
-        ``dp/dt = inverse * omega``, 1/s for omega in rad/s.
+        ``dp/dt = inverse * omega``, 1/s for omega in rad/s; InputError if the parameters are singular.
     determinant : Expr
         The determinant of B or, with a constraint, of the matrix with the gradient of the constraint above B.
     singular_set : SingularSet

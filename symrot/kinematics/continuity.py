@@ -39,14 +39,15 @@ def unwrap_euler(angles: Any, sequence: str, locked: Any = None) -> Array:
         The Euler sequence of the angles, such as ``"ZXZ"``.
     locked : bool array, shape (n, ...), optional
         Whether each sample is in gimbal lock, as returned together with the angles. Such a sample gets the third angle
-        of the last sample that is not locked, and the first angle that gives the same attitude.
+        of the last sample before it that is not locked (or else of the first sample), and the first angle that gives
+        the same attitude.
 
     Notes
     -----
     Each attitude has two sets of angles, apart from multiples of 2 pi: a proper sequence also has ``(q1 + pi, -q2, q3 +
     pi)``, a Tait-Bryan sequence ``(q1 + pi, pi - q2, q3 + pi)``. At each sample the set is chosen that is closer to the
-    set chosen at the sample before. The sets are called own, the one in ``angles``, and other. One comparison for each
-    pair of neighbouring samples suffices: the own set of the first is compared with both sets of the second. If the
+    set chosen at the sample before. Call the set in ``angles`` own, the second set other. One comparison for each pair
+    of neighbouring samples suffices: the own set of the first sample is compared with both sets of the second. If the
     other set is closer, the choice changes between these samples from own to other, or from other to own.
     """
     (first, _, last), _, _, _ = sequence_axes(sequence)
@@ -75,7 +76,10 @@ def _step(before: Array, after: Array) -> Array:
 
 
 def _take_over(angles: Array, locked: Any, sequence: str) -> None:
-    """Give each locked sample, in place, the third angle of the last unlocked sample, and adjust its first angle."""
+    """Give each locked sample, in place, the third angle of the last unlocked sample, and adjust its first angle.
+
+    Locked samples before any unlocked one get the third angle of the first sample.
+    """
     if not locked.any():
         return
     (first, _, last), _, _, sign = sequence_axes(sequence)

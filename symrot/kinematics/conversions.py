@@ -1,8 +1,8 @@
 """Numeric conversions between attitude descriptions, for arrays of any leading shape. NumPy alone.
 
 Conventions: :mod:`symrot.conventions`; angles in rad unless ``degrees=True``. Errors are a few units of 1e-16 for every
-attitude, also at gimbal lock. A zero, infinite or NaN quaternion gives NaN in its own row, without a warning. Wrong
-shapes and types raise ``InputError``.
+attitude, also at gimbal lock. From a zero, infinite or NaN quaternion, a conversion to another description gives NaN in
+its own row, without a warning. Wrong shapes and types raise ``InputError``.
 """
 
 from typing import Any
@@ -239,8 +239,9 @@ def _rodrigues(*q: Array) -> Components:
 
 
 def quaternion_to_rodrigues(q: Any) -> tuple[Array, Mask]:
-    """Return classical Rodrigues parameters, shape (..., 3), and a mask: True for rotations by pi, whose parameters are
-    NaN.
+    """Return classical Rodrigues parameters, shape (..., 3), and a mask.
+
+    The mask is True for rotations by pi, and so near pi that the parameters overflow; the parameters are NaN there.
     """
     rodrigues = by_components(_rodrigues, array_of(q, 4, what="a quaternion"), 4)
     return rodrigues[..., :3], rodrigues[..., 3] == 1

@@ -360,8 +360,8 @@ class Trajectory(MotionSamples):
         >>> float(abs(there @ back - np.eye(6)).max()) < 1e-12
         True
         """
-        times = [float(real_array(t, name, "a time in s")) for t, name in ((t0, "t0"), (t1, "t1"))]
-        if not np.isfinite(times).all():
+        times = [real_array(t, name, "a time in s") for t, name in ((t0, "t0"), (t1, "t1"))]
+        if any(time.ndim for time in times) or not np.isfinite(times).all():
             raise InputError(f"t0, t1: expected finite times in s, got {number.show(t0)} and {number.show(t1)}")
         if (self.has_external_torque and self.scene.table is None) or self._propagator is None:
             raise InputError(
@@ -369,7 +369,7 @@ class Trajectory(MotionSamples):
                 "argument torque"
             )
         # variational Taylor series, for every method, also for closed forms
-        return self._propagator.transition(self.scene, times[0], times[1])
+        return self._propagator.transition(self.scene, float(times[0]), float(times[1]))
 
     @cached_property
     def _span(self) -> tuple[float, float]:

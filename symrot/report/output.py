@@ -11,7 +11,9 @@ from typing import TYPE_CHECKING, Any, BinaryIO
 import numpy as np
 
 from symrot import __version__, conventions
+from symrot.errors import InputError
 from symrot.files.writing import check_target, write
+from symrot.formula.exact_numbers import show
 from symrot.report.layout import columns, exact, one_line
 from symrot.results.labels import LOCK, Labelled, event_array, labelled
 
@@ -143,7 +145,8 @@ def save(trajectory: "Trajectory", path: str | Path, quantities: Sequence[str] |
     Raises
     ------
     InputError
-        If the file cannot be written, or if there is no quantity with one of the names, or it was not computed.
+        If the file cannot be written, if there is no quantity with one of the names, or it was not computed, or for a
+        motion of an ensemble or from a file.
 
     Notes
     -----
@@ -160,6 +163,8 @@ def save(trajectory: "Trajectory", path: str | Path, quantities: Sequence[str] |
     ...     symrot.save(symrot.propagate("t_handle"), f"{folder}/motion.npz", ["omega", "energy"])
     ['t', 'omega', 'energy']
     """
+    if not hasattr(trajectory, "at_events") or not hasattr(trajectory, "scene"):
+        raise InputError(f"save: expected a trajectory, as symrot.propagate returns it, got {show(trajectory)}")
     path = Path(path)
     check_target(path, tuple(FORMATS), "save")
     arrays = labelled(trajectory, quantities)

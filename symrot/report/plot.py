@@ -15,10 +15,12 @@ from numpy.typing import NDArray
 
 from symrot import __version__
 from symrot.errors import InputError
+from symrot.formula.exact_numbers import show
 from symrot.report.curves import columns_of, draw_curves
 from symrot.report.picture import COLOURS, GREY, draw, literal
 from symrot.report.sphere import FAINT, draw_directions, prefixed
 from symrot.report.vertical import has_vertical, vertical_angles
+from symrot.results.samples import MotionSamples, Samples
 
 if TYPE_CHECKING:
     from symrot.propagation.trajectory import Trajectory
@@ -259,7 +261,8 @@ def plot(trajectory: "Trajectory", ax: Any = None, panel: str = "rates") -> Any:
     ----------
     trajectory : Trajectory
         The motion. The panel draws its dense solution between its first and its last sample. A motion that belongs to
-        an ensemble, or was read from a file, has no dense solution: the panel then joins its samples by lines.
+        an ensemble, or was read from a file, has no dense solution: the panel then joins its samples by lines. The
+        first has no panel ``"drift"``, and the second only ``"rates"``.
     ax : matplotlib Axes, optional
         The axes to draw into; default: axes of a new figure of ``matplotlib.pyplot``.
     panel : str
@@ -276,8 +279,9 @@ def plot(trajectory: "Trajectory", ax: Any = None, panel: str = "rates") -> Any:
     Raises
     ------
     InputError
-        If there is no such panel, matplotlib is not installed, ``ax`` has three dimensions, ``trajectory`` is a whole
-        ensemble, has no samples or no attitude to draw, or the scene has no vertical and the panel needs one.
+        If there is no such panel, also for this kind of motion, matplotlib is not installed, ``ax`` has three
+        dimensions, ``trajectory`` is not one motion, has no samples or no attitude to draw, or the scene has no
+        vertical and the panel needs one.
 
     Examples
     --------
@@ -289,10 +293,16 @@ def plot(trajectory: "Trajectory", ax: Any = None, panel: str = "rates") -> Any:
     if panel not in PANELS:
         raise InputError(f"panel: expected one of {', '.join(PANELS)}, got {panel!r}")
     require_matplotlib("plot")
+    if not isinstance(trajectory, Samples):
+        raise InputError(f"plot: expected a trajectory, such as symrot.propagate(scene), got {show(trajectory)}")
     if not len(trajectory):
         raise InputError("plot: expected a trajectory with samples, got a trajectory without samples")
     if np.ndim(trajectory.omega) != 2:
         raise InputError("plot: expected one motion, got an ensemble; plot one of its motions, such as ensemble[0]")
+    if panel != "rates" and not isinstance(trajectory, MotionSamples):
+        raise InputError(f"panel: expected 'rates' for a motion from a file, which has no scene, got {panel!r}")
+    if panel == "drift" and not hasattr(trajectory, "invariants"):
+        raise InputError("panel: expected a trajectory for 'drift', got one motion of an ensemble; propagate it alone")
     if panel == "vertical" and not has_vertical(trajectory.scene):
         raise InputError("panel: expected a scene with one torque of gravity or gravity_gradient for 'vertical'")
     if panel in ("attitude", "vertical", "space"):

@@ -209,7 +209,7 @@ class MotionSamples(Samples):
                     'euler: expected an Euler sequence, such as "ZXZ", as output.sequence of the scene, got none'
                 )
             return self.euler(output.sequence, degrees=output.degrees)
-        if name not in QUANTITIES:
+        if not isinstance(name, str) or name not in QUANTITIES:
             message = f"quantity: expected one of {', '.join(QUANTITIES)}, got {show(name)}"
             raise InputError(with_hint(message, name, QUANTITIES))
         value: Floats = getattr(self, name)

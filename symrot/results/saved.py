@@ -78,7 +78,7 @@ class SavedTrajectory(Samples):
 
     def quantity(self, name: str) -> Floats:
         """Return a quantity in the file by its name in ``output.quantities`` of a scene, such as ``"euler"``."""
-        if name not in self._items:
+        if not isinstance(name, str) or name not in self._items:
             raise InputError(f"{name}: expected a file with this quantity, got a file with {', '.join(self._items)}")
         values: Floats = self._items[name].values
         return values

@@ -468,6 +468,8 @@ def _ranges(box: Ranges) -> Sequence[str]:
     if isinstance(box, str):
         raise InputError(f"box: expected a mapping or a list of texts NAME=LOW:HIGH, got one text, {box[:60]!r}")
     if not isinstance(box, Mapping):
+        if not isinstance(box, Sequence) or not all(isinstance(text, str) for text in box):
+            raise InputError(f"box: expected a mapping or a list of texts NAME=LOW:HIGH, got {exact_numbers.show(box)}")
         return box
     texts = []
     for name, ends in box.items():

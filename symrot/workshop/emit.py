@@ -195,7 +195,7 @@ def emit(
     >>> symrot.emit("quaternion_dcm", jacobian=["q"]).name
     'quaternion_dcm_by_q'
     """
-    if isinstance(jacobian, str):
+    if isinstance(jacobian, str) or not all(isinstance(name, str) for name in jacobian):
         raise InputError(f"jacobian: expected a list of names such as ['omega'], got {jacobian!r}")
     if target not in TARGETS:
         raise InputError(f"target: expected one of {', '.join(TARGETS)}, got {target!r}")

@@ -3,6 +3,7 @@
 from collections.abc import Callable, Mapping, Sequence
 from fractions import Fraction
 from functools import cached_property
+from numbers import Integral
 from typing import Any
 
 from symrot.certificates.step_certificate import StepUnderTest, step_certificate
@@ -23,7 +24,7 @@ from symrot.codegen.steps import (
     stepped,
 )
 from symrot.errors import InputError
-from symrot.formula.exact_numbers import equal
+from symrot.formula.exact_numbers import equal, show
 from symrot.formula.program import Program
 from symrot.formula.tree import FUNCTIONS
 from symrot.kernels.jacobian import jacobian_name
@@ -81,8 +82,8 @@ def step_method(name: str, order: int | None = None, jacobian: Sequence[str] = (
         raise InputError(f"step: expected one of the methods {', '.join(STEPS)}, exact, got {name!r}")
     if order is not None and name != "taylor":
         raise InputError(f"order: expected an order only for the step 'taylor', got {order} for the step '{name}'")
-    if order is not None and not 1 <= order <= LARGEST_ORDER:
-        raise InputError(f"order: expected 1 to {LARGEST_ORDER} for the step 'taylor', got {order}")
+    if order is not None and not (isinstance(order, Integral) and 1 <= order <= LARGEST_ORDER):
+        raise InputError(f"order: expected 1 to {LARGEST_ORDER} for the step 'taylor', got {show(order)}")
     if len(set(jacobian)) < len(jacobian):
         raise InputError(f"jacobian: expected each input once, got {', '.join(jacobian)}")
     method = STEPS[name](ORDER if order is None else order)

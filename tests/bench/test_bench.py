@@ -15,7 +15,7 @@ from pathlib import Path
 import numpy as np
 import pytest
 
-from symrot.bench import check, command, kernels, skip
+from symrot.bench import check, command, kernels, overhead, skip, starts
 from symrot.bench.by_hand.kernel_peers import input_names, textbook_program
 from symrot.bench.comparison import reference as reference_module
 from symrot.bench.comparison import steps, suite, work_precision
@@ -600,6 +600,32 @@ def test_steps_of_other_tools_compile_and_agree(capsys):
     steps.main(["--rounds", "1", "--scenes", "tumbling_prism"])
     rows = capsys.readouterr().out.splitlines()[:2]
     assert all(row.count(" ns)") == 1 + sum(tool in row for tool in steps.PEERS) for row in rows)
+
+
+@pytest.mark.parametrize(
+    ("run", "arguments"),
+    [(overhead.main, ["nonsense"]), (starts.main, ["nonsense"]), (starts.main, ["nonsense", "--ensembles"]),
+     (steps.main, ["--scenes", "nonsense"])],
+)  # fmt: skip
+def test_an_unknown_scene_is_refused_in_one_sentence(run, arguments, capsys):
+    with pytest.raises(SystemExit):
+        run(arguments)
+    assert "nonsense: expected a scene" in capsys.readouterr().err
+
+
+@pytest.mark.usefixtures("known_reference")
+def test_a_method_whose_states_are_not_finite_is_left_out_with_the_reason(monkeypatch):
+    """So that the study, as JSON, has no infinite error, which is no number of JSON."""
+    lost = next(one for one in CONTESTANTS if one.name == "taylor")
+    lost = lost._replace(name="lost", prepare=lambda problem, tolerance: lambda stop: (np.full(7, np.nan), 1))
+    kept = next(one for one in CONTESTANTS if one.name == "dop853").at((1e-6,))
+    monkeypatch.setattr(work_precision, "chosen", lambda methods, quick: (lost.at((1e-3, 1e-6)), kept))
+    result = study(scene(), quick=True, rounds=1)
+    assert {run["method"] for run in result["runs"]} == {"dop853"}
+    assert result["skipped"] == [
+        {"method": "lost", "why": "at 1e-03: expected finite states, got infinite or undefined ones"}
+    ]
+    json.dumps(result, allow_nan=False)
 
 
 def test_claims_of_the_study_of_checks_are_forty_typical_and_forty_naming_ones():

@@ -41,7 +41,7 @@ def test_results_are_frozen():
 
 
 @pytest.mark.parametrize("box", ["theta=1:2", {"theta": 1}, {"theta": (1, 2, 3)}, {"theta": (2, 1)}, {"eta": (1, 2)},
-                                 {"theta": (float("nan"), 1)}])  # fmt: skip
+                                 {"theta": (float("nan"), 1)}, [3], None])  # fmt: skip
 def test_a_box_that_cannot_be_used_is_an_input_error(box):
     with pytest.raises(symrot.InputError, match="box"):
         symrot.bound(KERNEL, box)

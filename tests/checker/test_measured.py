@@ -176,4 +176,4 @@ def test_a_prime_after_a_number_is_no_rate():
 
 
 def test_a_repair_has_units_and_no_names_for_them():
-    assert symrot.check("5% = 0.5").repairs[0].text == "5 % = 0.0"
+    assert symrot.check("5% = 0.5").repairs[0].text == "5 % = 0.05"

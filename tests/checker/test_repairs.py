@@ -90,6 +90,12 @@ def test_a_conditional_claim_is_not_repaired_by_adding_the_difference(claim):
     assert not any(repair.code == "missing_term" for repair in checked(claim).repairs)
 
 
+def test_no_repair_divides_a_factor_by_itself():
+    """``x/y*y/3 == 1`` was offered, which says nothing about y."""
+    verdict = symrot.check("x*y == 1", assume=["x == 3"])
+    assert verdict.verdict == "false" and [repair.text for repair in verdict.repairs] == ["x*y == 3*y"]
+
+
 # -- the campaign -----------------------------------------------------------------------------------------------------
 
 

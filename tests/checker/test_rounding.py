@@ -20,6 +20,8 @@ def test_a_rounded_number_is_true_to_its_digits(claim):
 @pytest.mark.parametrize(("claim", "right"), [
     ("1500*2*pi/60 == 157.09", "1500*2*pi/60 == 157.08"), ("√2 = 1.415", "sqrt(2) = 1.414"), ("2/3 == 0.66", "2/3 == 0.67"),
     ("3.15 == pi", "3.14 == pi"), ("-pi == -3.141", "-pi == -3.142"), ("-pi == 3.14", "-pi == -3.14"),
+    ("pi == -3.15", "pi == 3.14"), ("pi == −3.14", "pi = 3.14"), ("-pi == -(3.15)", "-pi == -3.14"),
+    ("pi == -(3.15)", "pi == 3.14"), ("-7.28*10^-5 == 2*pi/86400", "7.27*10^(-5) = 2*pi/86400"),
     ("2π/86400 = 7.28×10⁻⁵", "2*π/86400 = 7.27*10^(-5)"),
 ])  # fmt: skip
 def test_a_wrong_digit_is_false_with_the_right_one(claim, right):
@@ -34,6 +36,16 @@ def test_a_wrong_digit_is_false_with_the_right_one(claim, right):
 def test_a_wrong_digit_beyond_double_precision_is_false(claim):
     assert symrot.check(claim).verdict == "false"
     assert symrot.check("pi*10^400 == 3.14*10^400").verdict == "true"
+
+
+@pytest.mark.parametrize(
+    ("claim", "repairs"),
+    [("2*pi == 6.29e5", []), ("pi/1000 == 0.50", ["pi/1000 == 0.0031"]), ("pi/999 == -0.5", ["pi/999 == 0.003"])],
+)
+def test_a_value_that_rounds_to_zero_at_the_printed_places_gets_other_places(claim, repairs):
+    """``2*pi == 0.00e5`` was offered, which is true to its digits and says nothing."""
+    verdict = symrot.check(claim)
+    assert verdict.verdict == "false" and [repair.text for repair in verdict.repairs] == repairs
 
 
 def test_a_number_without_a_point_and_a_formula_with_symbols_are_compared_exactly():

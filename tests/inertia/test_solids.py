@@ -393,6 +393,8 @@ REFUSED = [
     (("sphere",), {"density": "x"}, "positive mass"),
     (("sphere",), {"density": "-1 - x**2"}, "positive mass"),
     (("sphere",), {"density": "1/x"}, "polynomial"),
+    (("sphere",), {"density": "1/0"}, "polynomial"),
+    (("point_masses",), {"masses": [1], "points": [["1/0", 0, 0]]}, "finite coordinates"),
     (("sphere",), {"density": "sin(x)"}, "polynomial"),
     (("sphere",), {"density": "x**13"}, "degree"),
     (("sphere",), {"density": "1" + "+x" * 2000}, "fewer operations"),

@@ -1,7 +1,7 @@
 """A step in detail: the proof on the board is proven too, components fill a screen at most, and reasons stand once."""
 
 import pytest
-from sympy import Matrix, cos, sin
+from sympy import Matrix, acos, asin, cos, pi, sin
 
 from symrot.catalogue import derivation
 from symrot.proof.derivation import Derivation, ProofError
@@ -81,3 +81,10 @@ def test_a_step_that_differs_keeps_its_reason(page):
     text = page.markdown()
     assert text.count("*Why:*") == 2 and isinstance(page.items[0], Section)
     assert [*remarks(page.steps[0], True)] == []
+
+
+def test_a_step_that_rewriting_does_not_prove_says_so_in_detail():
+    """Sums of inverse functions are proven without normal forms; the page ended with an exception of Python."""
+    page = Derivation("sums", title="Sums")
+    page.step("The angles are complementary:", asin(x) + acos(x), pi / 2, because="both are angles of one triangle")
+    assert "proven equal by another method" in page.part(1, detail=True).markdown()

@@ -329,6 +329,8 @@ def test_a_transition_needs_torques_of_the_scene_and_finite_times():
         symrot.propagate(TOP, t=[1], torque=lambda t, omega, q: (0, 0, 0), max_step=0.1).transition(0, 1)
     with pytest.raises(InputError, match="finite times"):
         symrot.propagate("t_handle").transition(0, inf)
+    with pytest.raises(InputError, match="t0, t1: expected finite times"):
+        symrot.propagate("t_handle").transition([0], 1)
 
 
 def test_the_command_line_refuses_an_unknown_variable(capsys):

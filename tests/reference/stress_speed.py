@@ -31,7 +31,7 @@ def s40(long):
         ratios.append(theirs.least / ours.least)
     found.append(Figure("taylor", "one trajectory, times heyoka's speed, 1e-6 to 1e-12", 2, min(ratios), at_least=True))
     problem = race.SteppedProblem(name, 1.0)
-    runs = ensemble.measure(ensemble.prepare(name, 8, problem.stop, problem), 9)
+    runs = ensemble.measure(ensemble.prepare(8, problem.stop, problem), 9)
     peers = sorted({run.name for run in runs} - {"lanes"})
     ratios = []
     for decade in (1e-6, 1e-9, 1e-12):

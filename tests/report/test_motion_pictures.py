@@ -197,5 +197,11 @@ def test_a_motion_without_a_dense_solution_is_drawn_from_its_samples(tmp_path):
     for drawn in (ensemble[1], symrot.load(tmp_path / "motion.npz")):
         axes = symrot.plot(drawn, Figure().add_subplot())
         assert {len(line.get_xdata()) for line in axes.lines if len(line.get_xdata())} == {len(drawn.t)}
+        with pytest.raises(symrot.InputError, match="panel: expected"):
+            symrot.plot(drawn, Figure().add_subplot(), "drift")
+    with pytest.raises(symrot.InputError, match="panel: expected 'rates' for a motion from a file"):
+        symrot.plot(drawn, Figure().add_subplot(), "body")
     with pytest.raises(symrot.InputError, match="plot: expected one motion, got an ensemble"):
         symrot.plot(ensemble, Figure().add_subplot())
+    with pytest.raises(symrot.InputError, match=r"plot: expected a trajectory, .* got 't_handle'"):
+        symrot.plot("t_handle")

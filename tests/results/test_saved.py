@@ -58,6 +58,9 @@ def test_quantities_that_follow_from_omega_and_attitude_are_computed(trajectory,
     assert saved.euler("XYZ").tolist() == trajectory.euler("XYZ").tolist()
     with pytest.raises(InputError, match="energy: expected a file with this quantity, got a file with t, omega"):
         saved.quantity("energy")
+    for samples in (saved, trajectory):
+        with pytest.raises(InputError, match=r"got \['omega'\]|\['omega'\]: expected a file with this quantity"):
+            samples.quantity(["omega"])
     with pytest.raises(AttributeError, match="no quantity 'energy'; it has t, omega, quaternion"):
         _ = saved.energy
 
@@ -142,6 +145,13 @@ def test_other_files_are_refused_in_one_sentence(tmp_path):
         with pytest.raises(InputError, match="load: expected an NPZ file written by") as caught:
             symrot.load(file)
         assert "\n" not in str(caught.value) and str(file) in str(caught.value)
+
+
+def test_only_a_trajectory_is_saved(path):
+    many = symrot.propagate_ensemble("t_handle", omega=[[0, 1, 2]], t=[0, 1])
+    for other in (symrot.load(path), many, many[0], "t_handle"):
+        with pytest.raises(InputError, match=r"save: expected a trajectory, as symrot\.propagate returns it, got "):
+            symrot.save(other, path)
 
 
 def test_a_truncated_file_is_refused(path):

@@ -65,6 +65,16 @@ def test_unknown_inputs_are_refused(jacobian):
         step_text(SCENE, "rk4", None, jacobian)
 
 
+@pytest.mark.parametrize(("options", "message"), [
+    ({"step": "taylor", "order": 2.5}, "order: expected 1 to 16 for the step 'taylor', got 2.5"),
+    ({"step": "taylor", "order": "x"}, "order: expected 1 to 16 for the step 'taylor', got 'x'"),
+    ({"jacobian": [3]}, "jacobian: expected a list of names"),
+])  # fmt: skip
+def test_options_of_other_types_are_refused(options, message):
+    with pytest.raises(InputError, match=message):
+        emit("t_handle", **options)
+
+
 def test_derivatives_of_an_angle_of_two_states():
     scene = Scene.build(
         name="angle",

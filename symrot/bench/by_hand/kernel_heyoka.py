@@ -41,7 +41,7 @@ def heyoka_code(name: str) -> tuple[Any, Any, Any]:
     Raises
     ------
     ImportError
-        If heyoka is not installed, or its library cannot be located on this system.
+        If heyoka is not installed, or the system has no file /proc/self/maps, in which heyoka's library is looked up.
     """
     # The object code is linked without change; its sines come from the library that heyoka has loaded.
     states = _function(name).llvm_states

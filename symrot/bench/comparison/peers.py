@@ -60,7 +60,10 @@ def heyoka_integrator(
 
 
 def scalar_kernel(program: Program) -> Callable[..., Any]:
-    """Return the NumPy function that symrot emits for dy/dt as ``f(t, y, p)`` for one state (a list)."""
+    """Return the NumPy function that symrot emits for dy/dt, as ``f(t, y, p)`` for one state ``y`` (a list).
+
+    Without parameters ``p`` of the rates, the function is ``f(t, y)``.
+    """
     # Python floats and math replace zero-dimensional arrays. This halves SciPy's time; an expert would do it too.
     text = numpy_source(program, UNNAMED).replace("import numpy as np", "import math\n\nimport numpy as np")
     text = re.sub(r"np\.empty\(\((\d+), \*np\.shape\(y\)\[1:\]\)\)", r"np.empty(\1)", text)

@@ -76,7 +76,7 @@ class Problem:
     def state(self, y: Sequence[Any] | Floats, t: float) -> State:
         """Return the state of the body (omega and quaternion) at time ``t`` from the integrated states ``y``.
 
-        Omega is nan if ``y`` is not finite.
+        If ``y`` is not finite, omega is nan and the quaternion None.
         """
         values = np.array([[float(value) for value in y]])
         if not np.isfinite(values).all():
@@ -88,12 +88,12 @@ class Problem:
     def error(state: State, exact: State, least: float = 0.0) -> float:
         """Return the relative error of omega or the attitude error in rad, whichever is larger; inf for a nan state.
 
-        If the exact omega is shorter than ``least``, rad/s, the error of omega is relative to ``least``.
+        If the exact omega is shorter than ``least``, rad/s, the error of omega is relative to ``least``; it is absolute
+        if both are zero.
         """
         if not np.isfinite(state.omega).all():
             return math.inf
-        # A body nearly at rest before a pulse may rotate at 1e-40 rad/s, where relative errors are meaningless: for
-        # bodies slower than ``least``, rad/s, the error is relative to ``least``.
+        # A body nearly at rest before a pulse may rotate at 1e-40 rad/s, where relative errors are meaningless.
         size = max(float(np.linalg.norm(exact.omega)), least) or 1.0
         worst = float(np.linalg.norm(state.omega - exact.omega)) / size
         if state.quaternion is None or exact.quaternion is None:

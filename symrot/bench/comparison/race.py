@@ -1,7 +1,7 @@
 """Processor times of several runs that alternate, so that all run under the same conditions.
 
-All runs are timed once per round. A run of microseconds is repeated until the clock can resolve it; a run of 0.2 s or
-more is timed in fewer rounds. The median and the least time over the rounds are recorded.
+All runs are timed once per round. A run of microseconds is repeated, and the mean counts; a run of 0.2 s or more is
+timed in only two rounds. The median and the least time over the rounds are recorded.
 """
 
 import gc
@@ -13,8 +13,8 @@ from typing import Any
 
 __all__ = ["EndState", "Measured", "Task", "race", "raced", "rounds_for", "seconds_of", "work_ahead"]
 
-SHORTEST = 2e-3  # s, least duration of one timing: long enough to load code and numbers into the caches
-MOST_REPEATS = 200
+SHORTEST = 2e-3  # s, approximate duration of one timing: long enough to load code and numbers into the caches
+MOST_REPEATS = 200  # calls in one timing, even if they take less than SHORTEST
 SLOW, SLOW_ROUNDS = 0.2, 2  # a run that takes at least SLOW seconds is timed in only SLOW_ROUNDS rounds
 
 EndState = tuple[Any, int]  # the states at the end of a run, and the number of its steps

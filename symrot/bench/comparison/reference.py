@@ -1,8 +1,8 @@
 """Reference states of a scene's motion, computed by several independent methods, and their differences.
 
 The methods are the rows of :data:`REFERENCES`. The first available reference is used, and the others are compared with
-it; if none of them agrees, an error is raised. All start from the exact numbers of the scene, and none steps over a
-narrow pulse of a torque.
+it; if there are others and none of them agrees, an error is raised. All start from the exact numbers of the scene, and
+none steps over a narrow pulse of a torque.
 """
 
 import ctypes
@@ -47,7 +47,7 @@ __all__ = ["DIGITS", "Reference", "reference"]
 
 Progress = Callable[[str], object]
 
-MOST_SECONDS = 150.0  # limit for the series; it is abandoned as soon as its estimated time is longer
+MOST_SECONDS = 150.0  # limit for the series; it is abandoned after this time, or if its estimate is twice as long
 MOST_LONG_SECONDS = 20.0  # limit for fixed steps in long double
 MOST_STEPS = 2_000_000  # largest number of fixed steps
 FEWEST_STEPS = 64
@@ -65,7 +65,7 @@ class Reference(NamedTuple):
 
     states: tuple[State, ...]
     name: str
-    others: tuple[tuple[str, float], ...]  # names, and their differences from these states, measured like errors
+    others: tuple[tuple[str, float], ...]  # (another method, difference of its states, measured like an error)
     seconds: float
     skipped: tuple[str, ...]  # reasons why a reference was not available
 
@@ -93,7 +93,8 @@ class _Unavailable(Exception):
 def reference(problem: Problem, say: Progress = lambda text: None, seconds: float = MOST_SECONDS) -> Reference:
     """Compute the reference states of a scene's motion by several methods, and compare them.
 
-    References that would take more than ``seconds`` are left out.
+    A Taylor series that takes more than ``seconds`` of processor time is left out; methods with fixed steps stop
+    shortening the steps within this time.
 
     Raises
     ------
@@ -105,7 +106,7 @@ def reference(problem: Problem, say: Progress = lambda text: None, seconds: floa
     paths: list[tuple[str, list[State]]] = []
     skipped = []
     for name, compute in REFERENCES:
-        # needed only if just one other reference is available, as for torques without a Taylor series
+        # needed only if fewer than two references are available, as for torques without a Taylor series
         if compute is _extrapolated and len(paths) > 1:
             continue
         say(f"reference: {name} ..")
@@ -159,7 +160,6 @@ def _series(problem: Problem, say: Progress, seconds: float) -> list[list[Any]]:
     def watch(now: Any) -> None:
         spent = process_time() - clock
         whole = spent * max(1.0, float((problem.stop - problem.start) / (now - problem.start)))
-        # The series is given up as soon as the whole motion is expected to take more than ``seconds``.
         if whole > 2.0 * seconds or spent > seconds:
             raise _Unavailable(f"about {whole:.0f} s of work, more than the {seconds:.0f} s allowed")
         say(f"reference: Taylor series in {DIGITS} digits, {spent:.0f} of about {whole:.0f} s")
@@ -212,7 +212,8 @@ def _extrapolated(problem: Problem, say: Progress, seconds: float) -> list[State
 def _converged(general: Problem, name: str, files: Sequence[Path], seconds: float) -> list[State]:
     """Return the reference states by fixed steps in long double, shortened until the result stops changing.
 
-    ``files`` are the C files with the method ``name``.
+    The steps are not shortened further at the limit of time or of the number of steps. ``files`` are the C files with
+    the method ``name``.
     """
     if cache.missing():
         raise _Unavailable("no C compiler")
@@ -223,7 +224,8 @@ def _converged(general: Problem, name: str, files: Sequence[Path], seconds: floa
     steps, before, finest = max(FEWEST_STEPS, int(turned)), None, None
     follow = _fixed_steps(general, name, files, steps, _grid(general))
     change, clock = np.inf, process_time()
-    while steps <= MOST_STEPS and process_time() - clock < min(seconds, MOST_LONG_SECONDS) / 3.0:  # the next takes half
+    # a run takes about half as long as all runs before it together
+    while steps <= MOST_STEPS and process_time() - clock < min(seconds, MOST_LONG_SECONDS) / 3.0:
         path = follow(steps)
         if np.isfinite(path.astype(float)).all():
             now = change if before is None else float(np.max(np.abs(path - before) / sizes))

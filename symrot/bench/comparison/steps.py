@@ -26,6 +26,7 @@ from symrot.build import cache as build_cache
 from symrot.codegen.lowering.formulas import to_node
 from symrot.codegen.printing.c_function import c_function, c_name
 from symrot.codegen.steps import step_signature, stepped
+from symrot.errors import InputError
 from symrot.formula.program import Program
 from symrot.formula.tree import Node, children, with_children
 from symrot.scene.scene import load_scene
@@ -159,6 +160,11 @@ def main(arguments: list[str] | None = None) -> None:
     parser.add_argument("--scenes", nargs="+", metavar="NAME", default=SCENES)
     parser.add_argument("--count", action="store_true", help="count operations only")
     options = parser.parse_args(arguments)
+    try:
+        for scene in options.scenes:
+            load_scene(scene)
+    except InputError as reason:
+        parser.error(f"--scenes: {reason}")
     absent, over = set[str](), []
     for scene in options.scenes:
         for method, order in STEPS:

@@ -79,7 +79,9 @@ def run(
     Raises
     ------
     InputError
-        If the folder cannot be created or written.
+        If the folder cannot be created or written, or a method is unknown.
+    SymrotError
+        If no reference of a motion is available, or no other reference agrees with the first.
     """
     try:
         directory.mkdir(parents=True, exist_ok=True)
@@ -134,13 +136,13 @@ def _short(value: Any, name: str = "") -> Any:
 
 
 def summary(studies: Mapping[str, Mapping[str, Any]]) -> list[dict[str, Any]]:
-    """Return, for each other program, the median and the smallest of the ratios of its time to symrot's time.
+    """Return, for each other program, the median and the smallest of its times divided by those of symrot's steppers.
 
-    There is one ratio for each motion and each power of ten of the error.
+    There is one ratio for each motion and each power of ten of the error that both reach; a program without ratios is
+    left out.
     """
     rows = []
     for peer in PEERS:
-        # one ratio for each motion and each power of ten of the error
         ratios = [
             ratio
             for one in studies.values()

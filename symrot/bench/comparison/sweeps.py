@@ -109,7 +109,7 @@ def _on_cluster(scene: Scene, count: int, workers: int) -> Cost:
 
 
 def _peak() -> float:
-    """Return the largest memory of this process and of a process that it started, in MB."""
+    """Return the largest memory, in MB, that this process or a process that it started and that has ended has used."""
     unit = 1e6 if sys.platform == "darwin" else 1e3
     return max(resource.getrusage(who).ru_maxrss for who in (resource.RUSAGE_SELF, resource.RUSAGE_CHILDREN)) / unit
 

@@ -75,7 +75,7 @@ def study(
     tolerances : sequence of float, optional
         Decreasing numbers; each method runs at those that it supports. Default: one or two per decade.
     rounds : int, optional
-        Number of repetitions of each run. Default: 9, or 5 if ``quick``.
+        Number of repetitions of each run, at most 2 for a run of 0.2 s or more. Default: 9, or 5 if ``quick``.
 
     Raises
     ------
@@ -115,7 +115,7 @@ def study(
 
 
 def digest(problem: Problem) -> str:
-    """Return a hash of a motion (body, initial state, torques, span), by which stored results are assigned to it."""
+    """Return a hash of a motion (inertia, initial state, torques, span), by which stored results are assigned to it."""
     scene = problem.scene
     moving = (scene.body.inertia, scene.initial, scene.torques, scene.span.start, scene.span.stop, problem.names)
     return hashlib.sha256(repr(moving).encode()).hexdigest()[:16]
@@ -158,9 +158,12 @@ def _entry(problem: Problem, contestant: Contestant, tolerance: float, exact: Se
     for end in problem.ends:
         last, steps = follow(end)
         states.append(last if isinstance(last, State) else problem.state(last, end))
+    error = problem.worst(states, exact)
+    if not math.isfinite(error):
+        raise SymrotError("expected finite states, got infinite or undefined ones")
     run = partial(follow, problem.stop)
     # the first call is done, so its additional cost does not count: the time of a second call is measured
-    return Measured(contestant.name, tolerance, steps, problem.worst(states, exact), seconds_of(run)), run
+    return Measured(contestant.name, tolerance, steps, error, seconds_of(run)), run
 
 
 # ------------------------------------------------------------------------------------------------ reading

@@ -1,8 +1,8 @@
 """Growth of the error of each method along one motion, and drift of its conserved quantities.
 
-The reference is :class:`symrot.bench.comparison.exact_path.ExactPath`, far more accurate than doubles. Every method
-runs at its highest accuracy: symrot's Taylor series at 1e-15 and its DOP853 at 1e-14, SciPy's at the least rtol it
-accepts, and textbook RK4 with 200 steps per revolution.
+The reference is :class:`symrot.bench.comparison.exact_path.ExactPath`, far more accurate than doubles. Methods with a
+tolerance run near their highest accuracy: symrot's Taylor series at 1e-15 and its DOP853 at 1e-14, SciPy's at an rtol
+of 3e-14. Textbook RK4 makes 200 steps per revolution.
 """
 
 import ctypes
@@ -207,8 +207,11 @@ def growth(track: Track, long: bool = False, say: Callable[[str], object] = lamb
 
 
 def exponent(revolutions: Floats, errors: Floats) -> float:
-    """Return the exponent k if errors grow as t^k; nan if there are fewer than four points."""
-    # A motion with an error above 0.5 has nothing in common with the exact one.
+    """Return the exponent k if errors grow as t^k, fitted to the positive errors below 0.5 after ``FROM`` revolutions.
+
+    The result is nan if there are fewer than four such errors.
+    """
+    # A motion with a larger error has nothing in common with the exact one.
     chosen = (revolutions >= FROM) & np.isfinite(errors) & (errors > 0.0) & (errors < 0.5)
     if int(chosen.sum()) < 4:
         return math.nan

@@ -100,10 +100,10 @@ SCHEMES = {
 
 
 def carried(scene: Scene, stop: float, steps: tuple[float, ...], size: Any = (1.0, 2.0, 3.0)) -> list[Carried]:
-    """Move the corners of a box along a motion in steps; return how much the box grows and deforms.
+    """Move the corners of a box along a motion in steps, from time 0 to ``stop``; return how the box grows and deforms.
 
     The result has one :class:`Carried` for each step size of ``steps``, s, and each scheme in ``SCHEMES``, such as the
-    tangent step ``r' = r + h omega x r``. ``size`` holds the edges of the box.
+    tangent step ``r' = r + h omega x r``. ``size`` holds the lengths of the box's edges.
     """
     points, results = _corners(size), []
     motion = propagator(scene)

@@ -56,10 +56,17 @@ def stability(scene: Scene | None = None, long: bool = False, say: Callable[[str
     scene : Scene, optional
         The motion to follow; default: a free plate for many revolutions.
     long : bool
-        Whether to follow the free plate for 1e6 revolutions instead of 1e5. SciPy, which is slower, is followed for
-        the first 1e4 of these instead of the first 1e3.
+        Whether to follow the free plate for 1e6 revolutions instead of 1e5. In any motion SciPy, which is slower, is
+        followed for the first 1e4 revolutions instead of the first 1e3, and RK4 for 1e6 instead of 1e5.
     say : callable
         Called with messages about the progress.
+
+    Raises
+    ------
+    InputError
+        If the scene cannot be followed, for example because its last time is its first.
+    SymrotError
+        If a method, or the reference in 40 digits, cannot follow the motion.
     """
     results: dict[str, Any] = {"format": "symrot stability 1", "long": long}
     results["growth"] = _of_scene(scene, long, say) if scene else _of_plates(long, say)
@@ -144,7 +151,10 @@ def _curve(
 
 
 def passes() -> list[dict[str, Any]]:
-    """Return steps and errors of motions that pass near gimbal lock, for three choices of the integrated state."""
+    """Return steps and errors of motions that pass near gimbal lock, for three choices of the integrated state.
+
+    For a choice with which the motion cannot be computed, the dict has the reason (``"failed"``) instead.
+    """
     t, rows = np.linspace(-3, 8, 45), []
     for distance in PASSES:
         attitude = {"sequence": SEQUENCE, "angles": ["1/5", distance, "3/10"]}

@@ -46,7 +46,7 @@ def antiderivative(integrand: Expr, variable: Symbol) -> Expr:
     Raises
     ------
     ProofError
-        If the derivative of the result is not the integrand.
+        If the integrand is neither of the two: the derivative of the result must be the integrand.
     """
     total: Expr = Integer(0)
     try:

@@ -18,10 +18,10 @@ V, X, R, KAPPA = Symbol("v"), Symbol("x"), Symbol("r"), Symbol("kappa")
 
 
 def far(d: Derivation) -> None:
-    """Add steps to the derivation ``d``: recurrences for two series that are used far from resonance.
+    """Add steps to the derivation ``d``: recurrences for the power series that are used far from resonance.
 
-    Far from resonance, the linearly growing rate Omega is far from zero. The series describe a vector that is fixed in
-    space, and the small angle of rotation about this vector.
+    Far from resonance, the linearly growing rate Omega is far from zero. The series give a vector that is fixed in
+    space, and the small angle by which the rotation about this vector exceeds the phase.
     """
     d.section("The coefficients far from resonance")
     _vector(d)

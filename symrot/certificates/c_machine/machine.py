@@ -1,9 +1,9 @@
 """A machine that runs functions of C on numbers of any kind, such as decimals of 60 digits instead of doubles.
 
-It knows the C of symrot's closed forms: structures, arrays, pointers, loops and cases, but neither strings nor
+It knows the C of symrot's closed forms: structures, arrays, pointers, ``for`` loops and cases, but neither strings nor
 allocation. Every ``double`` operation is one operation on the numbers, and every constant has the exact value of the
-double. The modules of this folder read the text from the small to the large: types, expressions, declarations,
-statements, functions.
+double. Integers have any size: unsigned ones do not wrap around. The modules of this folder read the text from the
+small to the large: types, expressions, declarations, statements, functions.
 """
 
 from collections.abc import Callable, Mapping
@@ -52,7 +52,7 @@ class Machine(Statements):
             raise CertificateError(f"expected C that symrot emits, got a text with a fault ({reason})") from None
 
     def blank(self, struct: str) -> list[Any]:
-        """Return a structure of the C text with zeros in its fields."""
+        """Return a structure of the C text with zeros in its fields (None in pointers)."""
         fields: list[Any] = self._blank(Type("struct", struct))
         return fields
 

@@ -21,7 +21,7 @@ _DEEPEST = 40  # macros inside each other
 
 
 class Token(NamedTuple):
-    """A token: its kind ("number", "name", "text" or "mark"), its text and its line."""
+    """A token: its kind ("number", "name", "text" for a string, or "mark"), its text and its line."""
 
     kind: str
     text: str
@@ -152,7 +152,8 @@ def tokens_of(text: str) -> list[Token]:
     Raises
     ------
     CertificateError
-        For a token or a preprocessor line that symrot does not emit.
+        For a token or a preprocessor line that symrot does not emit. Misplaced lines, such as ``#endif`` alone, raise
+        IndexError, and a wrong number of a macro's arguments raises ValueError.
     """
     text = _COMMENT.sub(lambda match: "\n" * match[0].count("\n") or " ", text).replace("\\\n", " \x00")
     preprocessor, line = _Preprocessor(), 0

@@ -23,7 +23,7 @@ class Type(NamedTuple):
 
     kind: str  # "int", "real", "void", "struct", "array" or "pointer"
     of: Any = None  # the structure's name, or the type of the elements
-    size: int = 0  # of an array
+    size: int = 0  # of an array; -1 if the declaration gives none
 
 
 INT, REAL, VOID = Type("int"), Type("real"), Type("void")
@@ -47,7 +47,7 @@ class Function(NamedTuple):
     result: Type
     parameters: list[Type]
     body: list[Run]  # one element once the body is compiled
-    slots: list[int]  # number of variables
+    slots: list[int]  # one element: the number of variables
 
 
 class Value(NamedTuple):

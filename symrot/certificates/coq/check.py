@@ -34,7 +34,8 @@ class TheoremResult:
 
     file: str
     name: str
-    # "ok", "refused" (Coq stopped at this theorem) or "not reached" (Coq stopped at an earlier theorem of the file)
+    # "ok", "refused" (Coq stopped at this theorem) or "not reached" (Coq stopped before this theorem, or the file was
+    # not checked)
     outcome: str
 
 
@@ -68,9 +69,9 @@ class CoqResult:
 
 
 def coqc() -> str | None:
-    """Return the path of Coq's compiler ``coqc``, or of the one named in the environment variable ``COQC``.
+    """Return the path of Coq's compiler: ``coqc``, or the program that the environment variable ``COQC`` names.
 
-    The result is None if it is not installed.
+    The result is None if the program is not found.
     """
     return shutil.which(os.environ.get("COQC") or "coqc")
 
@@ -82,7 +83,10 @@ def coq_version(compiler: str) -> str:
 
 
 def unproven(text: str) -> tuple[str, ...]:
-    """Return the words of a Coq file, outside comments, that skip a proof or assume a statement, like ``Admitted``."""
+    """Return the words of a Coq file, outside comments, that are not allowed there, such as ``Admitted``.
+
+    They skip a proof, assume a statement, or change what Coq reads and checks.
+    """
     return tuple(match[0] for match in _UNPROVEN.finditer(_COMMENT.sub(" ", text)))
 
 
@@ -127,7 +131,10 @@ def check_texts(
     Raises
     ------
     CertificateError
-        If Coq is not installed. A file that Coq refuses raises nothing: its message is in ``problems`` of the result.
+        If Coq is not installed, or files require each other in a circle. A file that Coq refuses raises nothing: its
+        message is in ``problems`` of the result.
+    CompilerError
+        If Coq does not print its version.
     """
     compiler = coqc()
     if compiler is None:
@@ -174,9 +181,9 @@ def _required(text: str) -> set[str]:
 def _levels(sources: Mapping[str, str]) -> list[list[str]]:
     """Return Coq files in groups, in the order in which Coq must check the groups.
 
-    A file requires only files of earlier groups. ``sources`` maps the name of each file to its text.
+    A file requires only files of earlier groups, so the files of one group can be checked in parallel. ``sources`` maps
+    the name of each file to its text. CertificateError is raised if files require each other in a circle.
     """
-    # the files of one group can be checked in parallel
     levels: list[list[str]] = []
     left, done = dict(sources), set[str]()
     while left:
@@ -216,8 +223,10 @@ def _axioms(printed: str) -> tuple[str, ...]:
 
 
 def _results(name: str, text: str, complaint: str | None) -> list[TheoremResult]:
-    """Return the outcome of each theorem of a file; ``complaint`` is Coq's error message, or None."""
-    # files of rules or axioms have no theorems
+    """Return the outcome of each theorem of a file; ``complaint`` is Coq's error message, or None.
+
+    The list is empty for the files of rules and of axioms.
+    """
     if name in (RULES, ASSUMPTIONS):
         return []
     theorems = [(text.count("\n", 0, match.start()) + 1, match[1]) for match in _THEOREM.finditer(text)]

@@ -90,7 +90,8 @@ def assumptions_text(names: tuple[str, ...]) -> str:
 def coq_texts(names: tuple[str, ...] | None = None) -> dict[str, str]:
     """Return the texts of the Coq files ``names`` (default: all) and of three files that go with them, by file name.
 
-    The three are ``rotation.v``, which all others need, ``assumptions.v`` and ``_CoqProject``.
+    The three are ``rotation.v``, which all others need, ``assumptions.v`` and ``_CoqProject``. Unknown names are
+    ignored.
     """
     names_needed = tuple(name for name in coq_file_names() if names is None or name in names)
     printed = {name: coq_file(name).text for name in names_needed}

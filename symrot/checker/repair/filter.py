@@ -9,7 +9,7 @@ from typing import Any, NamedTuple
 
 from symrot.checker.claim.claims import Claim
 from symrot.checker.claim.functions import BUILT_IN
-from symrot.checker.claim.tree import TIME, Node, Path, is_derivative, text, walk
+from symrot.checker.claim.tree import TIME, Node, Path, factors_of, is_derivative, text, walk
 from symrot.checker.latex.cursor import MATRIX_CALLS
 from symrot.checker.repair.edits.faults import COST
 from symrot.checker.repair.edits.single import Edit
@@ -117,9 +117,11 @@ class NumericFilter:
     def sensible(self, place: str, tree: Node) -> bool:
         """Return whether ``tree`` may replace a side or definition of the claim.
 
-        ``place`` is "left", "right" or the name of the definition. No mere number may replace a formula, and a
-        definition may use neither its own name nor that of a later definition.
+        ``place`` is "left", "right" or the name of the definition. No mere number may replace a formula, no edit
+        may divide a factor by itself, and a definition may use neither its own name nor that of a later definition.
         """
+        if _divides_by_itself(tree) and not _divides_by_itself(self.tree_at(place)):
+            return False
         if place in SIDES:
             return is_nontrivial(tree) or not is_nontrivial(self.tree_at(place))
         order = list(self.definitions)
@@ -278,6 +280,16 @@ def _named(trees: Sequence[Node]) -> set[tuple[str, bool]]:
 def is_nontrivial(tree: Node) -> bool:
     """Return whether a tree contains a name other than pi, or the call of a function such as ``sqrt`` or ``Matrix``."""
     return any(node.kind in ("name", "call") and node.value != "pi" for _, node in walk(tree))
+
+
+def _divides_by_itself(tree: Node) -> bool:
+    """Return whether a product in a tree has a factor that is no number, and also divides by this factor: ``x/y*y``."""
+    for _, node in walk(tree):
+        if node.kind == "product":
+            below = {part for factor in node.args if factor.kind == "inv" for part in factors_of(factor.args[0])}
+            if any(factor in below and factor.kind != "number" for factor in node.args):
+                return True
+    return False
 
 
 def at(tree: Node, path: Sequence[int]) -> Node | None:

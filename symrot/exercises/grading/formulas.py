@@ -28,7 +28,7 @@ FUNCTIONS = (
 """The names, besides those of the given quantities, that a formula may contain: functions and pi."""
 
 LONGEST_PRODUCT = 12
-"""The most letters of a product that is written without signs."""
+"""Largest number of letters in a product that is written without signs, such as ``mgl``."""
 
 MAYBE_EXCHANGED = ("none", "two_faults", "dimension")
 """Diagnoses of a formula that may be right with two letters exchanged."""
@@ -151,7 +151,10 @@ def _split(match: re.Match[str], known: Collection[str]) -> str:
 
 
 def _partitions(name: str, known: Collection[str]) -> Iterator[tuple[str, ...]]:
-    """Yield the ways to write a name as a product of known symbols: ``mgl`` gives ``("m", "g", "l")``."""
+    """Yield the ways to write a name of at most LONGEST_PRODUCT letters as a product of known symbols.
+
+    ``mgl`` gives ``("m", "g", "l")``.
+    """
     if not name:
         yield ()
     if len(name) > LONGEST_PRODUCT:

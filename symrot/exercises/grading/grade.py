@@ -39,7 +39,8 @@ def grade(exercises: Exercise | ExerciseSheet, answers: Mapping[str, str] | Sequ
     Raises
     ------
     InputError
-        If there is an answer to a question that does not exist, or if the answers are one text.
+        If there is an answer to a question that does not exist, if a sequence has more answers than there are
+        questions, or if the answers are one text.
 
     Examples
     --------
@@ -95,7 +96,7 @@ def grade_files(exercises: str | Path, answers: str | Path) -> Grades:
     Raises
     ------
     InputError
-        If a file has another form, or answers a question that the sheet does not have.
+        If a file has another form or is no text in UTF-8, or if it answers a question that the sheet does not have.
     OSError
         If a file cannot be read.
     """

@@ -104,7 +104,7 @@ def _readings(answer: str) -> Iterator[_Number]:
 def _read(text: str) -> _Number | None:
     """Return the number and unit in a text such as ``0.5 kg m^2``, whose unit may be missing.
 
-    Return None if the text is not a number with a unit.
+    Return None if the text is not a number, with or without a unit.
     """
     for end in range(len(text), 0, -1):
         rest = text[end:].strip().removeprefix("*")

@@ -22,7 +22,7 @@ Part = Callable[[Picture], None]
 SHEET = Plane(1.0, scale_y=-1.0)
 BAR, USUAL, THIN = "ink bar", "ink thick", "ink"
 DASHED = "ink dashed"
-BASELINE = 4.5  # a letter's place is on its baseline, a label's place of a picture is at the middle of its height
+BASELINE = 4.5  # height of the middle of a label, where Picture.label expects its position, above its baseline
 
 
 def drawing(title: str, *parts: Part) -> str:
@@ -139,7 +139,7 @@ def ground(x: float, to_x: float, y: float) -> Part:
 
 
 def box(x: float, y: float, wide: float, high: float, deep: float) -> Part:
-    """Return a box in perspective; (x, y) is the upper left corner of its front."""
+    """Return a box in oblique projection; (x, y) is the upper left corner of its front."""
     dx, dy = 0.7 * deep, -0.45 * deep
     top = np.array([(x, y), (x + dx, y + dy), (x + wide + dx, y + dy), (x + wide, y)])
     side = np.array([(x + wide + dx, y + dy), (x + wide + dx, y + high + dy), (x + wide, y + high)])

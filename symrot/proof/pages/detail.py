@@ -23,6 +23,10 @@ LEFT_OUT = (
     "does not fit on a screen and is left out: both sides are multiplied out in components, like terms are collected, "
     "and the two normal forms are the same."
 )
+OTHER_PROOF = (
+    "The two sides have different normal forms. They are proven equal by another method, as sums of inverse functions "
+    "and of logarithms are, which gives no chain of expressions."
+)
 
 
 def excerpt(whole: Page, number: int, detail: bool = False) -> Page:
@@ -106,7 +110,10 @@ def _signs(step: Step) -> list[Passage]:
 
 
 def _detail(step: Step) -> list[Passage]:
-    rewritings = chains(step.left, step.right, step.hypotheses)
+    try:
+        rewritings = chains(step.left, step.right, step.hypotheses)
+    except ValueError:  # the normal forms differ
+        return [Passage(OTHER_PROOF)]
     # a value that comes out in the form in which it is printed, such as that of an integral, is printed once
     passages = [
         Passage(words, ((left, right) if formula(left) != formula(right) else ("", right),))

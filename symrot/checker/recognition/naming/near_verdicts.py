@@ -18,7 +18,7 @@ from symrot.checker.recognition.identification import known_value
 from symrot.checker.recognition.known_formulas import ending_of
 from symrot.checker.recognition.naming.edited import doubtful, readings_by_other_products, verdict_by_edit
 from symrot.checker.recognition.naming.evidence import is_evident, is_inverted, is_of_body, says_too_little
-from symrot.checker.recognition.naming.fit import fits_context, fits_quantity, has_other_length
+from symrot.checker.recognition.naming.fit import fits_context, fits_quantity, has_other_length, is_unusual
 from symrot.checker.recognition.naming.quantities import has_word, names_in, quantity_name, words_of
 from symrot.checker.recognition.naming.quantity_variants import (
     is_evident_by_quantity,
@@ -224,6 +224,9 @@ def _near(claim: Claim, named: NamedFormula) -> Verdict | None:
             repairs[near.tree] = Repair(f"{text(named.side)} == {text(near.tree)}", near.code, near.cost), readings
     if not repairs:
         return None
+    # a formula for the space frame with letters of the body frame is itself called doubtful
+    usual = {tree: pair for tree, pair in repairs.items() if claim.context or not all(map(is_unusual, pair[1]))}
+    repairs = usual or repairs
     (_, readings), *_ = repairs.values()
     notes = (UPRIGHT,) if any(is_inverted(named, near) for near in nearby if near.tree in repairs) else ()
     return doubtful(tuple(repair for repair, _ in repairs.values()), readings, notes)
