@@ -90,8 +90,8 @@ TABLE: tuple[FlagRule, ...] = (
     FlagRule(r"-ffast-math", FAST_MATH, sets=(*FAST, "flush to zero", "contraction")),
     FlagRule(r"-fno-fast-math", "takes -ffast-math back", clears=(*FAST, "flush to zero")),
     FlagRule(r"-funsafe-math-optimizations", "sums in another order, reciprocals, unsigned zeros; when linking, "
-             "it also sets flush to zero", sets=("reassociation", "reciprocals", "unsigned zeros", "approximate functions",
-                                               "flush to zero")),
+             "it also sets flush to zero",
+             sets=("reassociation", "reciprocals", "unsigned zeros", "approximate functions", "flush to zero")),
     FlagRule(r"-fno-unsafe-math-optimizations", "takes -funsafe-math-optimizations back",
              clears=("reassociation", "reciprocals", "unsigned zeros", "approximate functions", "flush to zero")),
     FlagRule(r"-fassociative-math", VOID["reassociation"], sets=("reassociation",)),
