@@ -22,7 +22,7 @@ from symrot.propagation.propagate import propagator
 __all__ = ["main", "measure"]
 
 OURS = tuple(10.0**-k for k in range(4, 15))  # symrot's tolerances; the first gives errors as large as heyoka's largest
-WHOLE = 7  # states: angular velocity and attitude
+WHOLE = 7  # number of states of a motion with attitude: angular velocity and quaternion
 PEERS = (1e-9, 1e-12, 2.0**-52)
 
 

@@ -78,7 +78,7 @@ def check_claim(claim: Claim, repair: bool = True) -> Verdict:
 
 
 def check_readings(claim: Claim, repair: bool = True) -> tuple[Verdict, Verdict | None]:
-    """Return (verdict, other): the verdict on a claim in its usual interpretation, and the one in another
+    """Return (verdict, other): the verdict on a claim in its usual interpretation, and the verdict in another
     interpretation.
 
     ``other`` is None unless the claim is true (or recognised) in another interpretation and not in the usual one.

@@ -93,7 +93,7 @@ def _values(claim: Claim, letter: Node, once: bool) -> str | None:
 
 
 def _may_have_others(claim: Claim, letter: Node) -> bool:
-    """Return whether an equation may have more solutions than the one by inverse functions, as ``sin x = 1/2`` has."""
+    """Return whether an equation may have other solutions than inverse functions give, as ``sin x = 1/2`` has."""
     if _is_polynomial(claim, letter):
         return False  # all its real roots are known
     assert claim.relation is not None

@@ -107,7 +107,8 @@ def finding_of(
     """Return the result of checking one claim, whose record in the document's file is ``data``.
 
     ``formula`` is the claim's entry in the errata, or None. ``condition`` makes the claim true although the document
-    does not state it, or is None.
+    does not state it, or is None. Raise InputError if the exact engine does not prove the correction of the errata, or
+    the claim under the condition.
     """
     if "editable" not in data:
         claim = replace(claim, editable=("left",))  # the left side is what the document prints

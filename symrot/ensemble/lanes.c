@@ -24,13 +24,15 @@ extern "C" {
 typedef struct {
     int64_t legs;
     double t0, tail, pace;       /* as in taylor.c; pace is a fraction of the span */
-    double max_steps;
+    double max_steps, patience;  /* limits of the steps of a leg, and of its steps between two checks of its pace */
+    double hopeless;             /* a leg that would exceed max_steps this many times at its pace is given up */
     const int64_t *motion;       /* of each leg: row of y and p */
     const int64_t *first, *count;/* of each leg: first sample time, and number >= 1, sorted by distance from t0 */
     const int64_t *row;          /* of each leg: row of its first sample in states */
     const double *y, *p, *times; /* rows of N and SYMROT_PARAMETERS numbers; times */
     double *states;              /* rows of N */
     double *reached, *steps, *jets; /* of each leg: last time, steps, jets */
+    double *covered;             /* of each leg: time covered by the last `patience` steps, if it is given up */
     int64_t *status;             /* of each leg: one of the above */
     int64_t next;                /* leg that the next free lane takes */
 } symrot_job;
@@ -39,6 +41,7 @@ typedef struct {
 typedef struct {
     int64_t leg[L], at[L];  /* leg or -1; samples written */
     double t[L], low[L], unit[L], stop[L], side[L], pace[L], due[L], steps[L], jets[L], halvings[L];
+    double full[L], mark[L];  /* number of steps at the next check of the pace, time at the last one */
     double y[N][L], carry[N][L], c[SYMROT_CONSTANTS][L];
 } symrot_lanes;
 
@@ -171,6 +174,25 @@ static void symrot_leave(const symrot_job *job, symrot_lanes *lanes, int l, int 
     lanes->leg[l] = -1;
 }
 
+/*
+ * Check the pace of a lane that has made its number of steps between two checks.
+ *
+ * Returns SYMROT_TOO_MANY at the limit of steps, SYMROT_HOPELESS if the rest would exceed it by far; otherwise sets the
+ * next check and returns SYMROT_PAUSED. The number of a lane's own steps decides, so that it does not depend on others.
+ */
+static int symrot_judge(const symrot_job *job, symrot_lanes *lanes, int l)
+{
+    const double covered = fabs(lanes->t[l] - lanes->mark[l]), left = fabs(lanes->stop[l] - lanes->t[l]);
+    if (lanes->steps[l] >= job->max_steps) return SYMROT_TOO_MANY;
+    if (job->patience*left > job->hopeless*job->max_steps*covered) {
+        job->covered[lanes->leg[l]] = covered;
+        return SYMROT_HOPELESS;
+    }
+    lanes->mark[l] = lanes->t[l];
+    lanes->full[l] = fmin(job->max_steps, lanes->full[l] + job->patience);
+    return SYMROT_PAUSED;
+}
+
 /* Put the next legs into free lanes, as long as there are some; mark those that need a first unit of time. */
 static int symrot_enter(symrot_job *job, symrot_lanes *lanes, int *entered)
 {
@@ -187,6 +209,8 @@ static int symrot_enter(symrot_job *job, symrot_lanes *lanes, int *entered)
             lanes->stop[l] = times[job->count[leg] - 1];
             lanes->side[l] = lanes->stop[l] < job->t0 ? -1.0 : 1.0;
             lanes->pace[l] = fabs(lanes->stop[l] - job->t0)*job->pace;
+            lanes->full[l] = fmin(job->max_steps, job->patience);
+            lanes->mark[l] = job->t0;
             lanes->low[l] = lanes->unit[l] = lanes->steps[l] = lanes->jets[l] = lanes->halvings[l] = 0.0;
             for (int i = 0; i < N; ++i) {
                 lanes->y[i][l] = job->y[motion*N + i];
@@ -369,7 +393,7 @@ SYMROT_EXPORT int symrot_lanes_run(symrot_lanes *lanes, symrot_job *job, int64_t
         }
         halvings = V_SELECT(broken, V_ADD(halvings, V_ALL(1.0)), V_ALL(0.0));
         const symrot_bits lost = broken & V_LESS(V_ALL(60.0), halvings);
-        const symrot_bits full = stepping & ~at_stop & ~V_LESS(steps, V_ALL(job->max_steps));
+        const symrot_bits full = stepping & ~at_stop & ~V_LESS(steps, symrot_load(lanes->full));
         const symrot_bits over = (stepping & at_stop) | lost | (active & finite & stuck) | full;
         if (V_ANY(over) || attempts == 0) {
             symrot_keep(lanes->t, t);
@@ -383,9 +407,9 @@ SYMROT_EXPORT int symrot_lanes_run(symrot_lanes *lanes, symrot_job *job, int64_t
                 symrot_keep(lanes->carry[i], carry[i]);
             }
             EACH_LANE(l) if (V_LANE(over, l)) {
-                const int status = V_LANE(lost, l) ? SYMROT_NOT_FINITE : V_LANE(full, l) ? SYMROT_TOO_MANY
+                const int status = V_LANE(lost, l) ? SYMROT_NOT_FINITE : V_LANE(full, l) ? symrot_judge(job, lanes, l)
                     : V_LANE(at_stop, l) ? SYMROT_DONE : SYMROT_UNDERFLOW;
-                symrot_leave(job, lanes, l, status);
+                if (status != SYMROT_PAUSED) symrot_leave(job, lanes, l, status);
             }
             changed = 1;
         }

@@ -18,8 +18,8 @@ from symrot.build.address import address
 from symrot.build.sources import c_text
 from symrot.errors import CompilerError
 from symrot.formula.program import Program
-from symrot.propagation.steppers.integration_stopped import IntegrationStopped, why_stuck
-from symrot.propagation.steppers.stepping import DONE, NOT_FINITE, UNDERFLOW, Floats, PathLike, is_sorted
+from symrot.propagation.steppers.integration_stopped import HOPELESS, IntegrationStopped, why_hopeless, why_stuck
+from symrot.propagation.steppers.stepping import DONE, NOT_FINITE, PATIENCE, UNDERFLOW, Floats, PathLike, is_sorted
 from symrot.propagation.steppers.taylor import step_tail
 
 __all__ = [
@@ -39,12 +39,18 @@ Integers = NDArray[np.int64]
 FLAGS = (*library.FLAGS, *library.TUNING)
 MAX_STEPS = 1_000_000_000
 STEPS_PER_CALL = 20_000  # steps of all lanes, about 20 ms, after which Python can react to an interrupt
-TOO_MANY = 5
-MEASURED = ("reached", "steps", "evaluations")  # results for each leg, the part of a motion on one side of the start
+TOO_MANY, HOPELESS_PACE = 5, 7
+MEASURED = (
+    "reached",
+    "steps",
+    "evaluations",
+    "covered",
+)  # results for each leg, the part of a motion on one side of the start
 REASONS = {
     NOT_FINITE: "its derivatives are not finite there",
     UNDERFLOW: "the step shrank to nothing, as it does before a singularity",
     TOO_MANY: "{steps} steps were not enough",
+    HOPELESS_PACE: "",  # see why_hopeless
 }
 ORDERS = (
     (3e-2, 10),
@@ -97,7 +103,8 @@ def wrap_translation_unit(definitions: str, width: int | None = None) -> str:
 
 
 _POINTERS = (
-    "motion", "first", "count", "row", "y", "p", "times", "states", "reached", "steps", "evaluations", "status"
+    "motion", "first", "count", "row", "y", "p", "times", "states", "reached", "steps", "evaluations", "covered",
+    "status",
 )  # fmt: skip
 
 
@@ -106,7 +113,7 @@ class _Job(ctypes.Structure):
 
     _fields_ = (
         ("legs", ctypes.c_int64),
-        *((name, ctypes.c_double) for name in ("t0", "tail", "pace", "max_steps")),
+        *((name, ctypes.c_double) for name in ("t0", "tail", "pace", "max_steps", "patience", "hopeless")),
         *((name, ctypes.c_void_p) for name in _POINTERS),
         ("next", ctypes.c_int64),
     )
@@ -230,6 +237,7 @@ class LaneIntegration:
         self.workers = max(1, min(workers, self.total))
         tail, pace = step_tail(tolerance)
         self._arguments: dict[str, float] = {"t0": t0, "tail": tail, "pace": pace, "max_steps": float(max_steps)}
+        self._arguments |= {"patience": float(PATIENCE), "hopeless": HOPELESS}
         self._arguments |= {"y": address(self.y), "p": address(self.p), "times": address(self.legs.table)}
         self._rows = self._addresses(("motion", "first", "count", "row"), self.legs.rows)
 
@@ -253,24 +261,27 @@ class LaneIntegration:
         _share(self.library, jobs)
         counted = np.zeros((2, n), dtype=np.int64)
         if total == n:  # each motion has one leg
-            counted[:, legs.rows[0]] = measured[1:]
+            counted[:, legs.rows[0]] = measured[1:3]
         else:
-            counted[:] = [np.bincount(legs.rows[0], weights, n) for weights in measured[1:]]
+            counted[:] = [np.bincount(legs.rows[0], weights, n) for weights in measured[1:3]]
         grid = states.reshape(n, self.samples, self.library.states)
         if legs.order is not None:
             sorted_grid, grid = grid, np.empty_like(grid)
             np.put_along_axis(grid, np.broadcast_to(legs.order, grid.shape[:2])[..., None], sorted_grid, axis=1)
-        messages = self._messages(status[0], measured[0]) if status.any() else ("",) * n
+        messages = self._messages(status[0], measured[0], measured[3]) if status.any() else ("",) * n
         return Outcome(grid, counted[0], counted[1], messages)
 
-    def _messages(self, status: Integers, reached: Floats) -> tuple[str, ...]:
+    def _messages(self, status: Integers, reached: Floats, covered: Floats) -> tuple[str, ...]:
         """Return, for each motion, the reason why it stopped early, or an empty text."""
-        # status, reached: how each leg (a motion in one direction of time) ended, and at which time
+        # status, reached, covered: how each leg (a motion in one direction of time) ended, at which time, and how far
+        # its last steps came if they were hopelessly short
         motion, first, samples, _ = self.legs.rows
         messages = [""] * len(self.y)
         for leg in np.flatnonzero(status != DONE).tolist():
             stop, last = float(self.legs.table[first[leg] + samples[leg] - 1]), float(reached[leg])
             reason = REASONS[int(status[leg])].format(steps=self.max_steps)
+            if status[leg] == HOPELESS_PACE:
+                reason = why_hopeless(PATIENCE, float(covered[leg]), abs(stop - last), self.max_steps)
             if status[leg] == UNDERFLOW:
                 reason = why_stuck(reason, last, self.t0, stop)
             messages[motion[leg]] = str(IntegrationStopped(last, reason, stop).later(self.epoch))

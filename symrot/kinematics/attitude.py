@@ -3,7 +3,7 @@
 from collections.abc import Callable, Sequence
 from typing import Any
 
-from sympy import ImmutableMatrix, Matrix
+from sympy import ImmutableMatrix, Matrix, nan, zoo
 
 from symrot.conventions import SEQUENCES
 from symrot.errors import InputError
@@ -53,9 +53,23 @@ def convert(source: str, target: str, values: Sequence[Any] | Matrix | None = No
     values : sequence of Expr, optional
         Values of the parameters of ``source``; default: its symbols. The values must satisfy the constraint of
         ``source``, such as unit norm.
+
+    Raises
+    ------
+    InputError
+        If a name is unknown, or if no or many values of ``target`` describe the attitude, as many axes do without a
+        rotation.
     """
     # Every description converts to and from the quaternion. The dcm is none of them: chart(name).dcm, euler_of_dcm.
     start = chart(source)
     parameters = expressions(start.parameters if values is None else values, len(start.parameters), source)
-    q = start.quaternion.xreplace(dict(zip(start.parameters, parameters, strict=True)))
-    return chart(target).of_quaternion(q)
+    if source == "rotation_vector":  # its formula is 0/0 at the zero vector
+        q = rotation_vector.quaternion_of_rotation_vector(parameters)
+    else:
+        q = start.quaternion.xreplace(dict(zip(start.parameters, parameters, strict=True)))
+    converted = chart(target).of_quaternion(q)
+    if converted.has(nan, zoo):
+        raise InputError(
+            f"convert: expected an attitude that {target} describes by one value, got {tuple(parameters)} as {source}"
+        )
+    return converted

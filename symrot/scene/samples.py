@@ -135,17 +135,18 @@ def read_samples(
     if (values["file"] is None) == (not written) or len(written) == 1:
         present = [key for key in ("t", "moment", "file") if values[key] is not None]
         fail(where, f"the keys t and moment, or the key file, got {' and '.join(present) or 'none of them'}")
+    lines: tuple[int, ...] = ()
     if written:
-        times, moments, place, rows = values["t"], values["moment"], f"{where}.t", 0
+        times, moments, place = values["t"], values["moment"], f"{where}.t"
         if len(times) != len(moments):
             fail(f"{where}.moment", f"one torque for each of the {len(times)} times, got {len(moments)}")
         if len(times) > MOST_SAMPLES:
             fail(place, f"at most {MOST_SAMPLES} samples", len(times))
     else:
-        place, rows = f"{where}.file: {values['file']}", 2
+        place = f"{where}.file: {values['file']}"
         path = Folders(folder, table_folders).file(values["file"], f"{where}.file", "a CSV file")
-        times, moments = _read_file(path, place)
-    _check(times, values["switching_times"], place, rows)
+        times, moments, lines = _read_file(path, place)
+    _check(times, values["switching_times"], place, lines)
     _check_slopes(times, moments, place)
     twice = {after for before, after in pairwise(times) if after == before}
     for switch in values["switching_times"]:
@@ -159,16 +160,17 @@ def read_samples(
     return Table(times, moments, values["frame"], tuple(sorted(set(values["switching_times"]))))
 
 
-def _check(times: tuple[float, ...], switching: tuple[float, ...], place: str, rows: int) -> None:
+def _check(times: tuple[float, ...], switching: tuple[float, ...], place: str, lines: Sequence[int]) -> None:
     """Raise InputError unless the times increase; only one of ``switching``, the switching times, may occur twice.
 
-    There must be two samples or more before, between and after the times that occur twice.
+    There must be two samples or more before, between and after the times that occur twice. ``lines`` are the numbers of
+    the samples' lines in their file ``place``; empty for samples in the scene.
     """
     if len(times) < 2:
         fail(place, f"two samples or more, got {len(times)}")
     length = 1
     for index, (before, after) in enumerate(pairwise(times), start=1):
-        at = f"{place}, line {index + rows}" if rows else f"{place}[{index}]"
+        at = f"{place}, line {lines[index]}" if lines else f"{place}[{index}]"
         if after < before:
             fail(at, f"increasing times, got {after!r} s after {before!r} s")
         if after == before and after not in switching:
@@ -190,10 +192,12 @@ def _check_slopes(times: tuple[float, ...], moments: tuple[tuple[float, ...], ..
                      f"{1 / _STEEPEST:g} s apart, got {change!r} N m within {gap!r} s after {before!r} s")  # fmt: skip
 
 
-def _read_file(path: Path, place: str) -> tuple[tuple[float, ...], tuple[tuple[float, float, float], ...]]:
-    """Return the times, s, and the torques, N m, of a CSV file whose first line is ``t, M1, M2, M3``.
+def _read_file(
+    path: Path, place: str
+) -> tuple[tuple[float, ...], tuple[tuple[float, float, float], ...], tuple[int, ...]]:
+    """Return times, s, torques, N m, and line numbers of the samples in a CSV file with the first line ``t,M1,M2,M3``.
 
-    Each other line holds one sample. ``place`` names the file in errors.
+    Each other line holds one sample or is blank. ``place`` names the file in errors.
     """
     expectation = f"a CSV file with the columns {', '.join(COLUMNS)}"
     try:
@@ -208,10 +212,11 @@ def _read_file(path: Path, place: str) -> tuple[tuple[float, ...], tuple[tuple[f
         fail(place, f"{expectation}, got an empty file")
     if tuple(cell.strip() for cell in lines[0].split(",")) != COLUMNS:
         fail(f"{place}, line 1", f"the columns {', '.join(COLUMNS)}, got other text")
-    rows = [_row(line, f"{place}, line {index}") for index, line in enumerate(lines[1:], start=2) if line.strip()]
+    numbers = tuple(index for index, line in enumerate(lines[1:], start=2) if line.strip())
+    rows = [_row(lines[index - 1], f"{place}, line {index}") for index in numbers]
     if len(rows) > MOST_SAMPLES:
         fail(place, f"at most {MOST_SAMPLES} samples, got {len(rows)}")
-    return tuple(row[0] for row in rows), tuple((row[1], row[2], row[3]) for row in rows)
+    return tuple(row[0] for row in rows), tuple((row[1], row[2], row[3]) for row in rows), numbers
 
 
 def _row(line: str, place: str) -> list[float]:

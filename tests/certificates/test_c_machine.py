@@ -1,4 +1,4 @@
-"""The machine that runs C in Python chooses the branches of ``#if`` as C does, and refuses faulty texts."""
+"""The machine that runs C in Python obeys the rules of C, and refuses faulty texts."""
 
 import pytest
 
@@ -23,3 +23,14 @@ def test_the_first_branch_whose_condition_holds_is_used(defined, branch):
 def test_a_faulty_preprocessor_line_is_refused(text):
     with pytest.raises(CertificateError, match="expected"):
         Machine(text, float, {})
+
+
+def test_an_assignment_with_an_operation_computes_its_address_once():
+    text = "int f(void) { int i = 0; int a[2] = {1, 2}; a[i++] += 10; a[i] -= a[0] *= 2; return 1000*i + a[0] - a[1]; }"
+    assert Machine(text, float, {}).call("f") == 1000 + 22 + 20
+
+
+@pytest.mark.parametrize("text", ["*(x - 1)", "x[-1]", "*(x + 1 - 2)", "010"])
+def test_an_index_before_an_array_and_an_octal_number_are_refused(text):
+    with pytest.raises(CertificateError, match=r"negative|octal"):
+        Machine(f"double f(double *x) {{ return {text}; }}", float, {}).call("f", ([1.0, 2.0], 0))

@@ -53,6 +53,7 @@ RIGHT = (
      "quaternion of axis and angle; with theta for alpha, u_x for n1"),
     ("q = cos(θ/2) + sin(θ/2) (n_x i + n_y j + n_z k)", "quaternion of axis and angle; with theta for alpha, n_x for n1"),
     ("T = 2π sqrt(L/g)", "period of a simple pendulum (a point mass); with L for c_3"),
+    ("T = 2π/sqrt(g/L)", "period of a simple pendulum (a point mass); with L for c_3"),
     ("T = 2π sqrt(3 R/(2 g))", "period of a disk that hangs from its rim"),
     ("θ'' + (g/L) sin θ = 0", "relation for a simple pendulum (a point mass); with L for c_3"),
     (r"\ddot\theta = -\frac{3g}{2l} \sin\theta", "relation for a rod about an end; with l for L"),

@@ -233,6 +233,22 @@ def test_steps_are_counted_and_limited():
     assert found.messages[1] == "" and (found.states[1] == 0).all()
 
 
+def test_a_hopeless_motion_is_given_up_and_leaves_the_others_alone():
+    """A motion that would take far more steps than the limit went on for minutes."""
+    path = small({"x": "k*y", "y": "-k*x"})
+    found = follow(path, [[1.0, 0.0], [1.0, 0.0]], [1.0], p=[[1e12], [3.0]], max_steps=10**7)
+    assert re.search(
+        r"would need \de\+\d+ steps, far more than the largest allowed number of 10000000", found.messages[0]
+    )
+    assert found.messages[1] == "" and found.steps[0] == 200_000
+    alone = follow(path, [[1.0, 0.0]], [1.0], p=[[3.0]])
+    assert (alone.states[0] == found.states[1]).all()
+    again = follow(path, [[1.0, 0.0]], [-1.0], p=[[1e12]], max_steps=10**7)
+    assert "would need" in again.messages[0]
+    long = follow(path, [[1.0, 0.0]], [1.0], p=[[1e6]])  # more steps than between two checks, and fewer than the limit
+    assert long.messages == ("",) and long.steps[0] > 200_000
+
+
 # ------------------------------------------------------------------------------------------------ times
 
 

@@ -300,3 +300,16 @@ def test_bad_input_is_one_sentence(call, words):
 def test_lengths_are_roots():
     assert rotation_vector.length((3, 4, 0)) == 5
     assert rotation_vector.length((1, 1, 0)) == sqrt(2)
+
+
+def test_conversions_of_values_are_limits_or_refused():
+    """The formulas are 0/0 at these values, and convert returned nan in silence."""
+    assert list(attitude.convert("rotation_vector", "quaternion", [0, 0, 0])) == [1, 0, 0, 0]
+    for target, q in [
+        ("axis_angle", (1, 0, 0, 0)),
+        ("rodrigues", (0, 1, 0, 0)),
+        ("mrp", (-1, 0, 0, 0)),
+        ("ZXZ", (1, 0, 0, 0)),
+    ]:
+        with pytest.raises(InputError, match=f"expected an attitude that {target} describes by one value"):
+            attitude.convert("quaternion", target, q)

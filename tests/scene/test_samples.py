@@ -125,6 +125,7 @@ REFUSED = {
     "words": (CSV.replace("-0.1", "none").encode(), "line 5: expected four finite numbers"),
     "not of a CSV": (CSV.replace("-0.1", "1_0").encode(), "line 5: expected four finite numbers"),
     "unsorted": (CSV.replace("\n3,", "\n1.5,").encode(), "line 5: expected increasing times, got 1.5 s after 2.0 s"),
+    "unsorted after a blank line": (CSV.replace("\n3,", "\n\n1.5,").encode(), "line 6: expected increasing times"),
     "repeated": (
         CSV.replace("\n3,", "\n2,").encode(),
         "line 5: expected increasing times; only a switching time may occur twice",

@@ -22,7 +22,7 @@ from symrot.propagation.steppers.smoothness import non_smooth_torque
 
 __all__ = ["CONTESTANTS", "Contestant", "Run", "chosen", "tolerances_from"]
 
-Run = Callable[[float], EndState]  # from an end time, s, to the integrated states there, or a State, and the steps
+Run = Callable[[float], EndState]  # end time, s -> (integrated states then, or a State; number of steps)
 
 
 def _half_decades(first: int, last: int) -> tuple[float, ...]:

@@ -1,7 +1,7 @@
 """Reference motions by Taylor series with 40 digits, errors near 1e-28; for free bodies, over any number of periods.
 
 Every period P of a free body adds the same rotation: ``q(t + n P) = R^n q(t)`` with ``R = q(P) q(0)^-1``. So the series
-of one period suffice for a million. The tested closed form shares no code.
+of one period suffice for a million periods. The tested closed form shares no code.
 """
 
 from collections.abc import Callable, Sequence
@@ -28,10 +28,10 @@ __all__ = ["DIGITS", "FUNCTIONS", "ORDER", "TAIL", "ExactPath", "as_mpf", "exact
 
 Floats = NDArray[np.float64]
 
-DIGITS, ORDER, TAIL = 40, 32, 1e-28
+DIGITS, ORDER, TAIL = 40, 32, 1e-28  # digits of all numbers; order of a Taylor series; size of its last terms
 MOST_STEPS = 2000
-FINER = 1e-4  # by this factor the last terms of the series are smaller in the path that checks a reference
-SLOWEST = 1e-8  # fraction of the initial angular speed (or of 1 rad/s): errors at slower times are relative to it
+FINER = 1e-4  # factor by which the last terms are smaller in the series that checks a reference
+SLOWEST = 1e-8  # fraction of the largest initial rate (or of 1 rad/s): errors of slower rates are relative to it
 
 
 _NAMES = ("sqrt", "sin", "cos", "tan", "exp", "log", "sinh", "cosh", "tanh", "asin", "acos", "atan", "atan2")
@@ -146,7 +146,7 @@ class ExactPath:
             return np.array([[float(x) for x in self.state(mpmath.mpf(float(t)))] for t in times])
 
     def period(self) -> Any:
-        """Return the period of the angular velocity of a free body, to about 29 digits.
+        """Return a period of the angular velocity of a free body, or a multiple of it, to about 29 digits.
 
         Raises
         ------

@@ -65,7 +65,7 @@ class Reference(NamedTuple):
 
     states: tuple[State, ...]
     name: str
-    others: tuple[tuple[str, float], ...]  # names, and their differences from these states, measured like errors
+    others: tuple[tuple[str, float], ...]  # (another method, difference of its states, measured like an error)
     seconds: float
     skipped: tuple[str, ...]  # reasons why a reference was not available
 
@@ -106,7 +106,7 @@ def reference(problem: Problem, say: Progress = lambda text: None, seconds: floa
     paths: list[tuple[str, list[State]]] = []
     skipped = []
     for name, compute in REFERENCES:
-        # needed only if just one other reference is available, as for torques without a Taylor series
+        # needed only if fewer than two references are available, as for torques without a Taylor series
         if compute is _extrapolated and len(paths) > 1:
             continue
         say(f"reference: {name} ..")

@@ -90,7 +90,7 @@ def derive() -> Derivation:
         named=r"\dot\omega_b",
     )
     d.passage(
-        "Each component of a damping torque depends on the same component of the angular velocity, so this "
+        "Each component of a damping torque is a multiple of the same component of the angular velocity, so this "
         "torque is along the axis too."
     )
     return d

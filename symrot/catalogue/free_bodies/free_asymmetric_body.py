@@ -202,7 +202,7 @@ def _attitude(d: Derivation) -> None:
         display=r"H\,\frac{A\,\omega_1^2 + B\,\omega_2^2}{A^2 \omega_1^2 + B^2 \omega_2^2}",
     )
     d.step(
-        "The nutation oscillates unless two moments are equal.",
+        "The nutation oscillates unless $A = B$.",
         rates[1],
         h * (1 / A - 1 / B) * sin(theta) * sin(psi) * cos(psi),
         because=r"$\dot\theta$ is the component along the line of nodes, $\omega_1 \cos\psi - \omega_2 \sin\psi$",

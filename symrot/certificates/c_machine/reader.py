@@ -37,6 +37,10 @@ class Reader:
     def _text(self) -> str:
         return self.tokens[self.index].text if self.index < len(self.tokens) else ""
 
+    def _slot(self) -> int:
+        self.slots += 1
+        return self.slots - 1
+
     def _fail(self, expected: str) -> CertificateError:
         line = self.tokens[min(self.index, len(self.tokens) - 1)].line
         return CertificateError(f"line {line}: expected {expected}, got {self._text!r}")

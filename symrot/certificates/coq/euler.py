@@ -79,7 +79,7 @@ def _jacobian(name: str, sequence: str, frame: str) -> Theorem:
     omega = f"{frame}_jacobian {_AT_T} *v vec {' '.join(RATES)}"
     derived = DCM_RATE[frame].format(dcm=f"{_DCM}", omega="omega")
     turns = [(axis, angle, RATES[ANGLES.index(angle)]) for axis, angle in _rotations(sequence)]
-    carrying = turns[1:] if frame == "body" else turns[:-1]  # rotations that carry the omega of others into the frame
+    carrying = turns[1:] if frame == "body" else turns[:-1]  # rotations that carry the others' omega into the frame
     steps = [
         "  intros phi theta psi t dphi dtheta dpsi Dphi Dtheta Dpsi omega.",
         f"  eapply (three_turns_{frame} ({_PATH})).",

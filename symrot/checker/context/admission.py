@@ -296,7 +296,7 @@ def plain(name: str) -> str:
 def guesses(context: Context, name: str, stated: str) -> list[str]:
     """Return the words in a formula's ``name`` that neither the context nor ``stated``, the claim's own words, imply.
 
-    The words of a place make one text, "about an end", as do those of a frame.
+    The words of a place make one text, "about an end", and so do the words of a frame.
     """
     # "moment of inertia z axis" is stated by I_zz
     words = [stated, context.frame, context.sequence, "moment of inertia" if "inertia" in stated else ""]

@@ -122,11 +122,11 @@ class Context:
         return " ".join(words for words in own if words)
 
     def fits(self, names: set[str]) -> bool:
-        """Return whether every name that the context describes is among ``names``, those of a text."""
+        """Return whether each meaning in the context is that of at least one of ``names``, the names in a text."""
         return all(any(meaning.is_of(name) for name in names) for meaning in self.meanings)
 
     def check_names(self, names: set[str]) -> None:
-        """Raise InputError if the context describes a name that is not in ``names``, the names of the claim."""
+        """Raise InputError if a meaning in the context is the meaning of none of ``names``, the names of the claim."""
         for meaning in self.meanings:
             if not any(meaning.is_of(name) for name in names):
                 raise InputError(

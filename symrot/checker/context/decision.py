@@ -105,7 +105,7 @@ ENGLISH = ("from", "to", "that", "at", "between", "on", "of")
 def _by_context(claim: Claim, named: NamedFormula, verdict: Verdict) -> Verdict:
     """Return the verdict that follows from comparing a claim with the known formulas whose names fit its context.
 
-    Return ``verdict``, the one without the context, if the comparison decides nothing.
+    Return ``verdict``, the verdict without the context, if the comparison decides nothing.
     """
     # the caller checks that all words of the context are used
     context, quantity = claim.context, _name(named)
@@ -340,8 +340,8 @@ def _different_repairs(repairs: Sequence[tuple[Repair, ...]]) -> tuple[Repair, .
 
 
 def _is_shifted(value: Any, candidate: Meant) -> bool:
-    """Return whether a claim's moment of inertia is that of ``candidate`` plus m d^2, for a parallel axis at a simple
-    fraction of a length.
+    """Return whether a claim's moment of inertia is the formula ``candidate`` plus m d^2, for a parallel axis at a
+    distance d that is a rational multiple of one of the claim's lengths.
     """
     if is_matrix(value) or not candidate.known.name.startswith("moment of inertia of a"):
         return False

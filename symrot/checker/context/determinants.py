@@ -92,7 +92,7 @@ def _is_determinant(tree: Node, generic: set[str]) -> bool:
 
 
 def _readings(claim: Claim, formula: Node, letter: str) -> tuple[Identification, ...]:
-    """Identify ``formula`` with determinants of rate Jacobians, or their negatives, those of usual sequences first.
+    """Identify ``formula`` with determinants of rate Jacobians, or their negatives; usual sequences come first.
 
     ``letter`` is the claim's letter for the second angle. The result has at most MOST_SEQUENCES entries; it is empty if
     ``formula`` has no value or is a matrix.

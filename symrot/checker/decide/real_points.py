@@ -59,7 +59,7 @@ class RealPoint:
 
     @property
     def rational(self) -> bool:
-        """Whether the field of the point is that of the rational numbers."""
+        """Whether the point's field is the rational numbers."""
         return bool(self.field == QQ)
 
     def value(self, poly: PolyElement) -> Any:

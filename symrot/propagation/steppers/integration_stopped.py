@@ -9,7 +9,7 @@ from numpy.typing import NDArray
 from symrot.errors import PropagationError
 from symrot.propagation.steppers.stats import Stats
 
-__all__ = ["IntegrationStopped", "Samples", "add_samples", "why_hopeless", "why_stuck"]
+__all__ = ["HOPELESS", "IntegrationStopped", "Samples", "add_samples", "why_hopeless", "why_stuck"]
 
 HOPELESS = 3.0  # times the limit of steps: a motion that would need more steps at its present pace is stopped
 MANY_TICKS = 2**20  # doubles between both ends of a step: with fewer, the clock is too coarse for the step

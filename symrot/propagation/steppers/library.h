@@ -19,7 +19,7 @@
 /* What a call for some steps returns. */
 enum {
     SYMROT_DONE = 0, SYMROT_PAUSED = 1, SYMROT_FULL = 2, SYMROT_NOT_FINITE = 3, SYMROT_UNDERFLOW = 4,
-    SYMROT_TOO_MANY = 5, SYMROT_ROUNDED = 6
+    SYMROT_TOO_MANY = 5, SYMROT_ROUNDED = 6, SYMROT_HOPELESS = 7
 };
 
 /* The last row of a record that starts before a time; rows have `width` numbers and follow in the direction `side`. */

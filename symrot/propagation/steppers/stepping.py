@@ -33,7 +33,7 @@ from symrot.propagation.steppers.segments import Segment, segments, split_at
 from symrot.propagation.steppers.stats import Stats, stats_of
 
 __all__ = [
-    "DONE", "MAX_STEPS", "NOT_FINITE", "NOT_FINITE_SENTENCE", "PAUSED", "ROUNDED", "UNDERFLOW", "Floats",
+    "DONE", "MAX_STEPS", "NOT_FINITE", "NOT_FINITE_SENTENCE", "PATIENCE", "PAUSED", "ROUNDED", "UNDERFLOW", "Floats",
     "Integration", "PathLike", "Run", "SteppedRecording", "Stepper", "Window", "check_longest_step", "check_tolerance",
     "is_sorted",
 ]  # fmt: skip

@@ -172,14 +172,14 @@ def readings_of_formula(
 def _without_function(value: Any, of_tangent: bool = False) -> tuple[Any, str]:
     """Return (u, ending) for ``acos(u)`` or ``sqrt(u)``: u is looked up among formulas whose names end with ``ending``.
 
-    ``2*acos(u)`` gives (u, ", 2 acos"), likewise asin and atan2; ``a*sqrt(u)`` gives (a**2*u, ", squared"). Any other
-    ``value`` gives (value, ""). With ``of_tangent``, for a claim ``tan(x) = a/b``, ``atan(a/b)`` gives
-    (Matrix([a, b]), ", atan2").
+    ``2*acos(u)`` gives (u, ", 2 acos"), likewise asin and atan2; ``a*sqrt(u)`` gives (a**2*u, ", squared") and
+    ``a/sqrt(u)`` gives (a**2/u, ", squared"). Any other ``value`` gives (value, ""). With ``of_tangent``, for a claim
+    ``tan(x) = a/b``, ``atan(a/b)`` gives (Matrix([a, b]), ", atan2").
     """
     if is_matrix(value):
         return value, ""
     # known formulas with roots and inverse functions are stored without them; the words end their names
-    if any(power.exp == Rational(1, 2) for power in Mul.make_args(value) if power.is_Pow):
+    if any(abs(power.exp) == Rational(1, 2) for power in Mul.make_args(value) if power.is_Pow):
         return value**2, SQUARED
     factor, function = value.as_coeff_Mul()
     if of_tangent and isinstance(function, atan) and factor == 1:

@@ -88,11 +88,11 @@ The needed value makes the whole formula right. CLOSE is the largest relative di
 
 
 def search_of(claim: Claim, named: NamedFormula, letters: Letters, values: Values) -> Search:
-    """Return the data for comparing a claim's formula with known formulas: what would one change of a part give?
+    """Return the data for comparing a claim's formula with known formulas.
 
-    The possible changes of each part of the formula, such as another sign, and their values at test points are computed
-    here once for all known formulas. ``letters`` has the formula's symbols and the test points, ``values`` are the
-    formula's values there.
+    They are the possible changes of each part of the formula, such as another sign, with the values that the part then
+    has at the test points; they are computed once for all known formulas. ``letters`` has the formula's symbols and the
+    test points, ``values`` are the formula's values there.
     """
     everything = Letters({**letters.atoms, LACKING: RANDOM}, letters.angles, [
         replace(point, symbols={**point.symbols, str(LACKING.value): value})
