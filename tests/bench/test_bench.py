@@ -6,6 +6,7 @@ No test depends on a measured time, because times depend on the machine.
 import json
 import math
 import re
+from argparse import Namespace
 from dataclasses import replace
 from fractions import Fraction
 from functools import cache
@@ -437,6 +438,9 @@ def test_a_wrong_general_kernel_would_be_seen(monkeypatch):
             if kind == "constant_body" else made  # fmt: skip
 
     monkeypatch.setattr(skip, "_nothing", wrong)
+    monkeypatch.setattr(skip, "rungs", lambda: {"wrong": ("wrong", scene())})
+    arguments = Namespace(**dict.fromkeys(("scene", "plot", "out", "directory", "json")), quick=True)
+    assert not command._skip(arguments, lambda text: None).good  # the command exits with 1
     row, _ = skip._row("wrong", scene())
     assert not row["agrees"]
 
