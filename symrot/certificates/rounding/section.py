@@ -242,9 +242,9 @@ def check_bounds(
                 raise CertificateError(str(reason)) from None
             if not _alike(item, recomputed):
                 raise CertificateError(
-                    f"{operations.name}: the certificate's error bound of {place} ({item['units']} units of {unit:g}) "
-                    f"or its details differ from what symrot computes on the same ranges ({recomputed['units']} "
-                    "units); certify the kernel again"
+                    f"{operations.name}: expected for {place} the error bound that symrot computes on the same ranges, "
+                    f"{recomputed['units']} units of {unit:g}, and its details, got {item['units']} units or other "
+                    "details; certify the kernel again"
                 )
 
 
