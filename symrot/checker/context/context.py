@@ -57,8 +57,9 @@ class Meaning:
     rest: str = ""
 
     def is_of(self, name: str) -> bool:
-        """Return whether this is the meaning of ``name``, or of a vector or matrix with the entry ``name``, as L for
-        L_x.
+        """Return whether the meaning applies to ``name``.
+
+        It applies to its own names, and to the entries of a vector or matrix among them: the meaning of L to L_x.
         """
         # a quaternion beta has the entry beta_0, a matrix A the entry A_12
         stem = re.sub(r"_?[0-4]$" if self.quantity.title == "quaternion" else r"_?[xyz1-3]$", "", name)
@@ -126,7 +127,7 @@ class Context:
         return all(any(meaning.is_of(name) for name in names) for meaning in self.meanings)
 
     def check_names(self, names: set[str]) -> None:
-        """Raise InputError if a meaning in the context is the meaning of none of ``names``, the names of the claim."""
+        """Raise InputError if the context gives a meaning to a name that is not among ``names``, the claim's names."""
         for meaning in self.meanings:
             if not any(meaning.is_of(name) for name in names):
                 raise InputError(
