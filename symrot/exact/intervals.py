@@ -64,6 +64,8 @@ def _log(x: Any) -> Any:
 def _atan2(y: Any, x: Any) -> Any:
     if 0 in y and 0 in x:
         raise ValueError("expected atan2(y, x) away from the origin, where it is undefined")
+    if x.b < 0 and y.a < 0 <= y.b:  # atan2 jumps at y = 0; for y.b = 0, mpmath returns an interval from pi to -pi
+        return iv.mpf([-1, 1]) * iv.pi
     return iv.atan2(y, x)
 
 
