@@ -248,7 +248,7 @@ class Expressions(Reader):
 
     def _element(self, array: Value, index: Value) -> Value:
         if array.type.kind not in ("array", "pointer") or index.type != INT:
-            raise self._fail("an array and a whole number")
+            raise self._fail("an index that is an integer, after an array or a pointer")
         start, number = array.run, index.run
 
         def place(f: Frame) -> Place:
