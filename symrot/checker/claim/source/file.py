@@ -165,8 +165,12 @@ def _claim(entry: dict[str, Any], number: int, label: str) -> Claim:
         else:
             readings.append((_equation(source, f"{place}: {at}", own), source))
     (relation, sources["claim"]), *rest = readings
+    others = [*(side for hypothesis in hypotheses for side in hypothesis[1:]), *(tree for _, tree in define)]
+    own_names, elsewhere = (
+        {name for side in sides for name in quantities_of(side)} for sides in (relation[1:], others)
+    )
     try:
-        context.check_names({name for side in relation[1:] for name in quantities_of(side)})
+        context.check_names(own_names, elsewhere)
     except InputError as reason:
         raise InputError(f"{place}: {reason}") from None
     return claim.with_relation(relation, alternatives=tuple(other for other, _ in rest))
