@@ -17,6 +17,7 @@ from symrot.checker.context.statements import read_context
 from symrot.checker.latex.reader import Names, read_latex
 from symrot.checker.typed.readings import Declared, Relation
 from symrot.errors import InputError
+from symrot.files.paths import path_of
 
 __all__ = ["Refusal", "read_claims", "read_entries"]
 
@@ -74,7 +75,7 @@ def read_entries(path: str | Path) -> list[Claim | Refusal]:
     from symrot.scene.file import read_toml
 
     label = str(path)
-    table = read_toml(Path(path), label, "claim")
+    table = read_toml(path_of(path, "claims"), label, "claim")
     if table.get("schema") != 1:
         raise InputError(f"{label}: expected schema = 1, got {table.get('schema')!r}")
     unknown = next((key for key in table if key not in FILE_KEYS), None)
