@@ -92,7 +92,7 @@ def _skip(options: Namespace, say: Progress) -> ModeReport:
         from symrot.report.skip_plot import save
 
         save(results, options.plot)
-    return ModeReport(results, skip.lines(results))
+    return ModeReport(results, skip.lines(results), all(row["agrees"] for row in results["rows"]))
 
 
 def _stability(options: Namespace, say: Progress) -> ModeReport:

@@ -211,6 +211,8 @@ def main(arguments: list[str] | None = None) -> None:
     )
     parser.add_argument("--motion", choices=list(MOTIONS), help="one motion only")
     options = parser.parse_args(arguments)
+    if options.many < 8 or options.many % 8:
+        parser.error(f"--many: expected a multiple of 8, got {options.many}")
     for name in [options.motion] if options.motion else MOTIONS:
         problem = SteppedProblem(name, 1.0)
         few = prepare(8, problem.stop, problem)

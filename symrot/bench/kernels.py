@@ -40,7 +40,7 @@ PROPER = ("zxz", "zyz", "xyx", "xzx", "yxy", "yzy")
 TAIT_BRYAN = ("zyx", "zxy", "xyz", "xzy", "yxz", "yzx")
 PAGE = 4096  # bytes
 PLACES = {"one": 1, "cached": 1, "many": 7}  # numbers of memory blocks between which rounds alternate
-SHORTEST = 1e-3  # s, least duration of one measurement
+SHORTEST = 1e-3  # s, approximate duration of one measurement
 BAR = 1.05  # largest accepted ratio of symrot's time to the least time of the other tools
 OWN_START = "CasADi from symrot's program"
 

@@ -6,6 +6,7 @@ The result is the median ratio to ``python -c 'import numpy'`` in the same round
 in every tenth round.
 """
 
+import argparse
 import os
 import subprocess
 import sys
@@ -36,13 +37,15 @@ def _symrot() -> list[str]:
     return [str(script)] if script.exists() else [sys.executable, "-m", "symrot"]
 
 
-def main(arguments: list[str]) -> int:
-    """Print how long ``symrot run`` takes from the shell, and how long its parts take, such as ``import numpy``.
-
-    ``arguments`` may hold the number of rounds and the name of a scene.
-    """
-    rounds = int(arguments[0]) if arguments else ROUNDS
-    scene = arguments[1] if len(arguments) > 1 else "tumbling_prism"
+def main(arguments: list[str] | None = None) -> None:
+    """Print how long ``symrot run`` takes from the shell, and how long its parts take, such as ``import numpy``."""
+    parser = argparse.ArgumentParser(prog="python -m symrot.bench.start", description=(__doc__ or "").split("\n")[0])
+    parser.add_argument("rounds", type=int, nargs="?", default=ROUNDS)
+    parser.add_argument("scene", nargs="?", default="tumbling_prism", help="a shipped scene, or a file")
+    options = parser.parse_args(arguments)
+    rounds, scene = options.rounds, options.scene
+    if rounds < 1:
+        parser.error(f"rounds: expected a number from 1 on, got {rounds}")
     with TemporaryDirectory(prefix="symrot-") as directory:
         warm = os.environ | {"SYMROT_CACHE": str(Path(directory) / "warm")}
         warm.pop("PYTHONDONTWRITEBYTECODE", None)
@@ -72,8 +75,7 @@ def main(arguments: list[str]) -> int:
     print(f"  symrot run, warm, divided by import numpy: {ratio:.2f} (median of the ratios)")
     both = middle["import sympy"] + middle["compiler call"]
     print(f"  symrot run, cold, divided by import sympy + compiler call: {middle['symrot run, cold'] / both:.2f}")
-    return 0
 
 
 if __name__ == "__main__":
-    sys.exit(main(sys.argv[1:]))
+    main()

@@ -86,7 +86,7 @@ class FieldTorque(NamedTuple):
     fields: tuple[tuple[str, FieldPattern], ...]
 
     def number(self, name: str) -> Pattern:
-        """Return the pattern (0, 1, -1 or free) of the field ``name``, which is a number, such as ``"weight"``."""
+        """Return what is known of a scalar field such as ``"weight"``: that it is 0, 1 or -1, or nothing (free)."""
         pattern = dict(self.fields)[name]
         assert isinstance(pattern, Pattern)
         return pattern

@@ -109,7 +109,7 @@ This limit is used where the closed form is computed for one trajectory after th
 
 
 class Solved(NamedTuple):
-    """The trajectories ``rows``, which one closed form computes, with their constants as arrays (``batch``)."""
+    """Trajectories that one closed form computes: their indices ``rows``, and the constants of the form as arrays."""
 
     form: ClosedForm
     rows: Rows

@@ -167,9 +167,10 @@ def _refuse(winding: int, target: Floats, axis: int, depths: Floats, index: int,
 
 
 def _search_pairs(surface: Surface, boxes: _Boxes, where: str) -> Floats | None:
-    """Return the points where an edge of a triangle meets the boundary of another; None if there are too many pairs.
+    """Return the points where an edge of a triangle touches an edge or a corner of another triangle.
 
-    Raise InputError if two triangles cross.
+    Return None if there are too many pairs of triangles. Raise InputError if a triangle passes through the inside of
+    another one.
     """
     low, high = boxes
     axis = int(np.argmin((high - low).mean(axis=1)))

@@ -1,5 +1,6 @@
 """Reading of mesh files, mostly by trimesh: vertices and triangles as arrays, a clear error for an unusable file."""
 
+import logging
 from io import BytesIO
 from pathlib import Path
 from typing import Any
@@ -88,6 +89,9 @@ def _trimesh() -> Any:
         raise InputError(
             "expected trimesh, which reads meshes, but it is not installed; install it with pip install 'symrot[mesh]'"
         ) from None
+    log = logging.getLogger("trimesh")
+    if not log.hasHandlers():  # its warnings contain tracebacks
+        log.addHandler(logging.NullHandler())
     return trimesh
 
 

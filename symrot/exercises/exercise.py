@@ -184,13 +184,31 @@ class Exercise:
 
     @staticmethod
     def from_json(data: Mapping[str, Any]) -> "Exercise":
-        """Return the exercise that was converted to ``data`` by :meth:`to_json`."""
+        """Return the exercise that was converted to ``data`` by :meth:`to_json`.
+
+        Raise KeyError, TypeError, AttributeError or ValueError for other data with questions that cannot be graded.
+        """
         plain = dict(data)
         plain["data"] = tuple(Datum(**each) for each in data["data"])
-        plain["questions"] = tuple(Question(**{**q, "positive": tuple(q["positive"])}) for q in data["questions"])
+        plain["questions"] = tuple(
+            _checked(Question(**{**q, "positive": tuple(q["positive"])})) for q in data["questions"]
+        )
         plain["hints"] = tuple(data["hints"])
         plain["solution"] = tuple(Equation(**each) for each in data["solution"])
         return Exercise(**plain)
+
+
+def _checked(question: Question) -> Question:
+    """Return a question that was made from JSON; raise an exception if it cannot be graded."""
+    texts = [value for name, value in vars(question).items() if name not in ("symbols", "positive", "slips")]
+    texts += question.positive
+    texts += [text for pair in (*question.symbols.items(), *question.slips.items()) for text in pair]
+    if not all(isinstance(text, str) for text in texts) or question.kind not in ("formula", "number"):
+        raise ValueError("a question of unknown kind, or with a field that is not a text")
+    if question.kind == "number":
+        for number in (question.decimal, *question.slips.values()):
+            float(number)
+    return question
 
 
 def sheet_data(exercises: Sequence[Exercise]) -> dict[str, Any]:

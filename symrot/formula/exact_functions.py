@@ -15,7 +15,8 @@ from symrot.formula.tree import FUNCTIONS, Node, evaluate
 __all__ = ["EXACT_FUNCTIONS", "exact_value"]
 
 GUARD_BITS = 64  # additional bits of mpmath's working precision
-MOST_BITS = 1 << 20  # largest size of an argument or a result; an exponential of a larger number overflows or is zero
+# largest argument of an exponential, and largest number of bits by which the size of an argument raises the precision
+MOST_BITS = 1 << 20
 
 
 def _transcendental(name: str, *arguments: Fraction) -> Fraction:

@@ -160,7 +160,7 @@ def _bits_for(value: Fraction) -> int:
 
 
 def _sin_shifted(value: Fraction, quarter_turns: int) -> Fraction:
-    """Return sin(value + quarter_turns * pi/2), with ``value`` in rad, with an error below 2^-300.
+    """Return sin(value + quarter_turns * pi/2), with ``value`` in rad, with an absolute error below 2^-300.
 
     One quarter turn gives the cosine.
     """
@@ -176,17 +176,17 @@ def _sin_shifted(value: Fraction, quarter_turns: int) -> Fraction:
 
 
 def sin(value: Fraction) -> Fraction:
-    """Return the sine of ``value``, rad, with an error below 2^-250."""
+    """Return the sine of ``value``, rad, with an absolute error below 2^-250."""
     return _sin_shifted(value, 0)
 
 
 def cos(value: Fraction) -> Fraction:
-    """Return the cosine of ``value``, rad, with an error below 2^-250."""
+    """Return the cosine of ``value``, rad, with an absolute error below 2^-250."""
     return _sin_shifted(value, 1)
 
 
 def tan(value: Fraction) -> Fraction:
-    """Return the tangent of ``value``, rad: the quotient of a sine and a cosine with errors below 2^-250.
+    """Return the tangent of ``value``, rad: the quotient of a sine and a cosine with absolute errors below 2^-250.
 
     Raise ZeroDivisionError if this cosine is 0.
     """
@@ -212,12 +212,12 @@ class Angle(NamedTuple):
 
     @property
     def sin(self) -> Fraction:
-        """The sine: exact if it is a rational number, else with an error below 2^-250."""
+        """The sine: exact if it is a rational number, else with an absolute error below 2^-250."""
         return sin(self.radians) if self.rational else _sin_half_turns(self.half_turns)
 
     @property
     def cos(self) -> Fraction:
-        """The cosine: exact if it is a rational number, else with an error below 2^-250."""
+        """The cosine: exact if it is a rational number, else with an absolute error below 2^-250."""
         return cos(self.radians) if self.rational else _sin_half_turns(self.half_turns + Fraction(1, 2))
 
     def scaled(self, factor: Fraction) -> "Angle":

@@ -71,11 +71,21 @@ def as_polynomial(node: Node, generators: dict[str, Node]) -> Polynomial | None:
     if kind == "neg":
         return -first
     if kind == "**":
-        return first ** node[2] if 0 <= node[2] <= 8 else None
+        return _power(first, node[2]) if 0 <= node[2] <= 8 else None
     (second,) = others
     if kind == "/":
         return first / second if set(second.terms) == {()} else None
     return first * second if kind == "*" else first + second if kind == "+" else first - second
+
+
+def _power(base: Polynomial, exponent: int) -> Polynomial | None:
+    """Return a power of a polynomial; None if a lower power has more than MOST_TERMS terms."""
+    power = constant(1)
+    for _ in range(exponent):
+        if len(power.terms) > MOST_TERMS:
+            return None
+        power = power * base
+    return power
 
 
 def _node(polynomial: Polynomial, generators: dict[str, Node]) -> Node:

@@ -162,10 +162,14 @@ class Solid:
         return _tidied(tensor.about_point(self.inertia, self.mass, offset))
 
     def with_mass(self, mass: Any) -> "Solid":
-        """Return the same body with its density scaled so that its total mass is ``mass``, kg."""
-        total = _scalar(mass)
-        inertia = _tidied(tensor.scale(total / self.mass, self.inertia))
-        return replace(self, mass=total, density=factor(self.density * total / self.mass), inertia=inertia)
+        """Return the same body with its density, or its point masses, scaled so that its total mass is ``mass``, kg."""
+        total = _dimension(mass, _MASS, self.shape)
+        share = total / self.mass
+        inertia = _tidied(tensor.scale(share, self.inertia))
+        if "masses" in self.dimensions:
+            scaled = {**self.dimensions, "masses": tuple(factor(each * share) for each in self.dimensions["masses"])}
+            return replace(self, dimensions=scaled, mass=total, inertia=inertia)
+        return replace(self, mass=total, density=factor(self.density * share), inertia=inertia)
 
     def _over(self, polynomial: Polynomial) -> Expr:
         return _expression(polynomial, {**_MAP_SYMBOLS, **self.dimensions})
@@ -378,6 +382,8 @@ def solid(name: str, *, mass: Any = None, density: Any = None, **dimensions: Any
     if measure.is_zero:
         raise InputError(f"expected a {name} with a positive volume, got corners in one plane")
     if measure.is_negative:  # the same tetrahedron with its corners in the opposite order
+        if isinstance(density, str):  # "x3" in it is a coordinate of the third corner in the user's order
+            density = _density(density, values).as_expr()
         return solid(name, mass=mass, density=density, vertices=[dimensions["vertices"][n] for n in (0, 1, 3, 2)])
     if density is None:
         total = symbols.m if mass is None else _dimension(mass, _MASS, shape)

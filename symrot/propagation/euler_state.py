@@ -265,7 +265,7 @@ class EulerMotion(Motion):
         return states, Stats(accepted, rejected, evaluations, seconds, switches, rounded_beyond=rounded)
 
     def dense(self, span: tuple[float, float]) -> Callable[[Floats], Floats]:
-        """Return a function that takes n times within ``span``, s, and returns the N states, shape (n, N)."""
+        """Return a function from n times within ``span`` (in s) to the N states at each of them, shape (n, N)."""
         sides = [list(self._blocks(end)) if end != self.start else [] for end in span]
 
         def at(times: Floats) -> Floats:

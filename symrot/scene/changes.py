@@ -94,8 +94,8 @@ def changed(scene: SceneContent, changes: Mapping[str, Any]) -> Content:
     Raises
     ------
     InputError
-        If a key names nothing in the scene, or both a constant of a torque and a dimension of the body, or if the scene
-        has no place for the value.
+        If a key names nothing in the scene, or both a constant of a torque and a dimension of the body, or if the value
+        cannot be written into the table of the scene that the key leads to.
     """
     result = scene._replace(content=deepcopy(scene.content))
     for key, value in changes.items():

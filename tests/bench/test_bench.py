@@ -6,6 +6,7 @@ No test depends on a measured time, because times depend on the machine.
 import json
 import math
 import re
+from argparse import Namespace
 from dataclasses import replace
 from fractions import Fraction
 from functools import cache
@@ -17,8 +18,8 @@ import pytest
 
 from symrot.bench import check, command, kernels, overhead, skip, starts
 from symrot.bench.by_hand.kernel_peers import input_names, textbook_program
+from symrot.bench.comparison import meshes, steps, suite, work_precision
 from symrot.bench.comparison import reference as reference_module
-from symrot.bench.comparison import steps, suite, work_precision
 from symrot.bench.comparison.contestants import CONTESTANTS, chosen
 from symrot.bench.comparison.exact_path import ExactPath
 from symrot.bench.comparison.peers import scalar_kernel
@@ -437,6 +438,9 @@ def test_a_wrong_general_kernel_would_be_seen(monkeypatch):
             if kind == "constant_body" else made  # fmt: skip
 
     monkeypatch.setattr(skip, "_nothing", wrong)
+    monkeypatch.setattr(skip, "rungs", lambda: {"wrong": ("wrong", scene())})
+    arguments = Namespace(**dict.fromkeys(("scene", "plot", "out", "directory", "json")), quick=True)
+    assert not command._skip(arguments, lambda text: None).good  # the command exits with 1
     row, _ = skip._row("wrong", scene())
     assert not row["agrees"]
 
@@ -626,6 +630,17 @@ def test_a_method_whose_states_are_not_finite_is_left_out_with_the_reason(monkey
         {"method": "lost", "why": "at 1e-03: expected finite states, got infinite or undefined ones"}
     ]
     json.dumps(result, allow_nan=False)
+
+
+def test_the_error_of_a_mesh_is_that_against_exact_integrals_of_any_size(tmp_path, monkeypatch):
+    """A mesh above the size up to which integrals are exact by default."""
+    path = tmp_path / "ellipsoid.obj"
+    vertices, triangles = meshes.ellipsoid(100)
+    rows = [("v", *vertex) for vertex in vertices.tolist()] + [("f", *corners) for corners in (triangles + 1).tolist()]
+    path.write_text("".join(f"{' '.join(map(str, row))}\n" for row in rows))
+    monkeypatch.setattr(meshes.meshes, "MOST_EXACT", 1)
+    assert 0 < meshes._measured_error(path) < 1e-14
+    assert meshes.meshes.MOST_EXACT == 1
 
 
 def test_claims_of_the_study_of_checks_are_forty_typical_and_forty_naming_ones():

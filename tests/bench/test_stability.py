@@ -48,6 +48,12 @@ def test_the_truth_is_that_of_elliptic_integrals_a_million_turns_later():
         assert largest(row[:3], omega) < 2e-16 and largest(row[3:], q, sign=True) < 2e-16
 
 
+def test_the_attitude_is_computed_even_if_it_is_no_output():
+    asked = plate().with_({"output.quantities": ["omega"]})
+    track = growth.Track(asked, np.array([0.0, 1.0]), periodic=False)
+    assert track.curve("exact", propagator(track.scene, "exact")(track.times)).attitude.max() < 1e-14
+
+
 def test_the_error_of_the_reference_is_that_of_its_own_series():
     """The check of a coarse series gives its distance from one with 1e-12 of its last terms."""
     motion = propagator(plate(), "taylor", 1e-15)._motion

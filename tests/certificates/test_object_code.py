@@ -163,8 +163,8 @@ STRANGE = (
     (f"movsd xmm2,QWORD PTR fs:[rip+f]; {GOOD}; ret", NOT_UNDERSTOOD, "segment fs"),
     ("ret", NOT_UNDERSTOOD, "expected every path through the code to write y[0]"),
     (f"{GOOD}", NOT_UNDERSTOOD, "expected an instruction, got none"),
-    (f"cvtsd2si eax,xmm0; {GOOD}; ret", NOT_UNDERSTOOD, "expected an instruction whose effect is known, got another"),
-    (f"ldmxcsr DWORD PTR [rdi]; {GOOD}; ret", NOT_UNDERSTOOD, "expected an instruction whose effect is known, got another"),
+    (f"cvtsd2si eax,xmm0; {GOOD}; ret", NOT_UNDERSTOOD, "expected a machine instruction that symrot can execute"),
+    (f"ldmxcsr DWORD PTR [rdi]; {GOOD}; ret", NOT_UNDERSTOOD, "expected a machine instruction that symrot can execute"),
     (f"call tgamma; {GOOD}; ret", NOT_UNDERSTOOD, "16 bytes"),
     (f"sub rsp,8; call tgamma; {GOOD}; add rsp,8; ret", NOT_UNDERSTOOD, "expected a call of a known C library function, got tgamma"),
     (f"jmp rax; {GOOD}; ret", NOT_UNDERSTOOD, "expected a jump to a fixed address, got a computed address"),
@@ -174,8 +174,8 @@ STRANGE = (
     (GOOD.replace("addsd xmm1,xmm0", "subsd xmm1,xmm0") + "; ret", DIFFERS, "the object code"),
     (UPPER.format(""), IDENTICAL, ""),  # registers that AVX-512 has
     (UPPER.format("; vzeroupper"), IDENTICAL, ""),
-    (UPPER.replace("xmm18,xmm18,", "xmm18{{k1}},xmm18,").format(""), NOT_UNDERSTOOD, "expected an instruction whose effect is known, got another"),
-    (UPPER.replace("xmm18,xmm18,xmm17", "xmm18,xmm18,xmm17,{{ru-sae}}").format(""), NOT_UNDERSTOOD, "expected an instruction whose effect is known, got another"),
+    (UPPER.replace("xmm18,xmm18,", "xmm18{{k1}},xmm18,").format(""), NOT_UNDERSTOOD, "expected a machine instruction that symrot can execute"),
+    (UPPER.replace("xmm18,xmm18,xmm17", "xmm18,xmm18,xmm17,{{ru-sae}}").format(""), NOT_UNDERSTOOD, "expected a machine instruction that symrot can execute"),
     (UPPER.replace("vaddsd", "vsubsd").format(""), DIFFERS, "the object code"),
     (GOOD.rpartition(";")[0] + "; pcmpeqd xmm3,xmm3; pxor xmm4,xmm4; psllq xmm3,xmm4; andnpd xmm3,xmm1; "
      "movsd QWORD PTR [rsi],xmm3; ret", NOT_UNDERSTOOD, "got a variable shift"),

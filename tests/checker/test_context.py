@@ -262,7 +262,7 @@ def test_a_prime_is_a_rate_if_its_words_say_so():
     ({"units": ["m"]}, r"units: expected a mapping like \{'x': 'm'\} from names to units, got \['m'\]"),
     ({"where": ["I = spin", "I = torque"]}, "expected one meaning of I, got 'spin' and 'torque'"),
     ({"where": ["omega = torque"]}, "expected a quantity with the unit rad/s, which omega usually has, got 'torque'"),
-    ({"where": ["T = torque"], "units": {"T": "J/s"}}, "expected a quantity in J/s, the unit stated for T"),
+    ({"where": ["T = torque"], "units": {"T": "J/s"}}, "expected a meaning of T whose unit is J/s, as stated for it"),
     ({"where": ["T = kinetic energy of a sphere"], "body": "disk"}, "expected a solid sphere, as the words about T say"),
     ({"where": ["omega = angular velocity in space"], "frame": "body"}, "expected the space frame"),
     ({"where": "T = torque"}, "expected a list of texts"),

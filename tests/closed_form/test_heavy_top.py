@@ -197,6 +197,12 @@ def test_s23_fast_spin(w3):
     assert max(long_errors((0, 0, w3), tilted(F(1)), [F(1, 3), 200], in_periods=False)) <= BAR
 
 
+@pytest.mark.parametrize("w3", [0, 2])
+@pytest.mark.parametrize("digits", [12, 20, 26, 32, 60, 100])
+def test_s23_weak_pull(digits, w3):
+    assert in_bar((F(6, 5), F(-1, 3), w3), tilted(F(2, 3)), pull=F(1, 10**digits))
+
+
 @pytest.mark.parametrize("omega, q0", [((0, 0, 3), UPRIGHT), ((0, 0, 0), UPRIGHT), ((0, 0, -2), HANGING)])
 def test_what_rests_on_the_vertical_stays(omega, q0):
     motion = heavy_top.motion((1, 1, F(1, 2)), 1, (0, 0, 1), omega, q0)

@@ -31,6 +31,7 @@ CASES = {
     "exact numbers": lambda: free_body.motion((Fraction(1, 3), Fraction(2, 3), 1), (Fraction(1, 7), 1, 2), Q0),
     "full tensor": lambda: free_body.FreeRigidBody(principal_axes(TENSOR)).motion((0.3, 1, 0.5), Q0),
     "nutation": lambda: heavy_top.motion(TOP, 1.0, ABOVE, (0.3, -1.8, 4.0), (0.9, 0.3, 0.0, 0.1)),
+    "weak pull": lambda: heavy_top.motion(TOP, 1e-60, ABOVE, (0.3, -1.8, 0.4), (0.9, 0.3, 0.0, 0.1)),
     "pendulum": lambda: heavy_top.motion(TOP, 1.0, ABOVE, (0.0, 1.0, 0.0), (0.9, 0.1, 0.3, 0.0)),
     "plane separatrix": lambda: heavy_top.motion(TOP, 1.0, ABOVE, (2.0, 0.0, 0.0), (0.0, 1.0, 0.0, 0.0)),
     "through the vertical": lambda: heavy_top.motion(TOP, 1.0, ABOVE, (2.5, 0.0, 1.0), (1.0, 0.0, 0.0, 0.0)),

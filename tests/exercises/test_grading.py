@@ -81,6 +81,7 @@ def test_a_fragment_of_the_answer_gets_little_credit(answer, credit):
 @pytest.mark.parametrize("answer", [
     "", "=", "((((", "1/0", "{}", r"\frac{", "m" * 2000, "L**999999", "2^2^2^2^2^2", "sqrt(-m)", "nan", "1e999", "\0", "m\nL", "4 %",
     "__import__('os')", "\N{GRINNING FACE}", "1.0e308 kg km^2", "-1.0e308 kg km^2", "1e308 kg km^2", "5e-324 kg m^2",
+    "m " * 990,
 ])  # fmt: skip
 def test_hostile_answers_get_a_mark_and_no_credit(answer):
     for mark in symrot.grade(ROD, [answer, answer]):

@@ -14,7 +14,17 @@ SQUARES = (
     "t**2", "(t - c)**2", "4*(t - c)**2", "(t - c)**2*omega_1**4", "(t - c)**3", "(t - c)**2/omega_1**2", "sin(t)**2*q1",
     "t**2 - 2*c*t + c**2", "t*t + 2*t + 1", "1/4 - sin(t) + sin(t)**2", "t**4 + 2*t**2 + 1",
 )  # fmt: skip
-OTHERS = ("t", "t**2 + 1", "1 - cos(t)", "omega_1**2 + omega_2**2", "t**2 - 2*c*t + c", "2", "c**3 + 1", "1/t")
+OTHERS = (
+    "((t + omega_1 + omega_2 + omega_3 + q0 + q1 + q2 + q3)**2)**8 + 1",  # 245157 terms
+    "t",
+    "t**2 + 1",
+    "1 - cos(t)",
+    "omega_1**2 + omega_2**2",
+    "t**2 - 2*c*t + c",
+    "2",
+    "c**3 + 1",
+    "1/t",
+)
 
 
 @pytest.mark.parametrize("radicand", SQUARES)

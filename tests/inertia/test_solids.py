@@ -334,6 +334,21 @@ def test_per_mass_and_per_density():
     assert solid("sphere", radius="1/2", mass="3").inertia[0, 0] == Rational(3, 10)
 
 
+def test_corners_in_either_order_keep_their_names_in_a_density():
+    corners = [[0, 0, 0], [1, 0, 0], [0, 0, 2], [0, 1, 0]]
+    for vertices in (corners, corners[::-1]):
+        parts = [Part("tetrahedron", {"vertices": vertices}, density="1 + z1 + 2*z2 + 3*z3 + 5*z4 + x*z3")]
+        assert solid("tetrahedron", density=parts[0].density, vertices=vertices).mass == mass_properties(parts).mass
+
+
+def test_another_mass_is_positive_and_that_of_the_points():
+    for mass in (-1, 0):
+        with pytest.raises(InputError, match="expected a positive mass of the cone"):
+            solid("cone").with_mass(mass)
+    points = solid("point_masses", masses=[1, 2], points=[[0, 0, 0], [1, 0, 0]]).with_mass(6)
+    assert (points.dimensions["masses"], points.density, points.inertia[1, 1]) == ((2, 4), 1, Rational(4, 3))
+
+
 def test_inertia_about_a_point():
     """A rolling sphere has 7/5 m R^2 about its point of contact."""
     assert solid("sphere").inertia_about((0, 0, R))[0, 0] == Rational(7, 5) * symbols.m * R**2

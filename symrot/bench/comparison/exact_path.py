@@ -146,7 +146,7 @@ class ExactPath:
             return np.array([[float(x) for x in self.state(mpmath.mpf(float(t)))] for t in times])
 
     def period(self) -> Any:
-        """Return the period of the angular velocity of a free body, to about 29 digits.
+        """Return a period of the angular velocity of a free body, or a multiple of it, to about 29 digits.
 
         Raises
         ------

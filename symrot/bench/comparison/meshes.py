@@ -7,6 +7,7 @@ rounding error is measured on a mesh with a hundredth of the triangles, where ex
 """
 
 import argparse
+import sys
 from pathlib import Path
 from tempfile import TemporaryDirectory
 from time import process_time
@@ -44,9 +45,11 @@ def _measured_error(path: Path) -> float:
 
     The mesh is integrated once in doubles and once exactly, in integers.
     """
-    exact = symrot.mesh(path, mass=1)
-    most, meshes.MOST_EXACT = meshes.MOST_EXACT, 0
+    most = meshes.MOST_EXACT
     try:
+        meshes.MOST_EXACT = sys.maxsize
+        exact = symrot.mesh(path, mass=1)
+        meshes.MOST_EXACT = 0
         rounded = symrot.mesh(path, mass=1)
     finally:
         meshes.MOST_EXACT = most

@@ -8,6 +8,7 @@ of 3e-14. Textbook RK4 makes 200 steps per revolution.
 import ctypes
 import math
 from collections.abc import Callable
+from dataclasses import replace
 from functools import cached_property
 from typing import Any, NamedTuple
 
@@ -59,6 +60,9 @@ class Track:
     """
 
     def __init__(self, scene: Scene, times: Floats, periodic: bool) -> None:
+        if "quaternion" not in scene.output.quantities:
+            output = scene.output._replace(quantities=(*scene.output.quantities, "quaternion"))
+            scene = replace(scene, output=output)
         make_plan(scene)  # rejects switched torques, because the reference series would continue past the switch
         self.scene, self.times = scene, times
         self.motion = propagator(scene, "dop853" if self.rough(scene) else "taylor", TIGHTEST)._motion

@@ -26,7 +26,7 @@ def derive() -> Derivation:
     momentum, motion = _momentum()
     torque = rate(momentum, motion)
     line = Matrix([cos(PHI), sin(PHI), 0])
-    _torque(d, torque, line, momentum, motion)
+    _torque(d, torque, line, momentum)
     _level(d, torque, line)
     _reactions(d)
     return d
@@ -41,7 +41,7 @@ def _momentum() -> tuple[Matrix, dict]:  # type: ignore[type-arg]
     return Matrix(dcm("ZXZ")) * diag(A, A, C) * omega, pairs((PHI, PSI), (PRECESSION, SPIN))
 
 
-def _torque(d: Derivation, torque: Matrix, line: Matrix, momentum: Matrix, motion: dict) -> None:  # type: ignore[type-arg]
+def _torque(d: Derivation, torque: Matrix, line: Matrix, momentum: Matrix) -> None:
     d.section("The torque of steady precession")
     d.passage(
         r"The Euler angles have the sequence ZXZ. The nutation and the rates $\dot\phi$ of precession and $\dot\psi$ "

@@ -55,10 +55,6 @@ class Declarations(Expressions):
             self._expect(";")
         return struct
 
-    def _slot(self) -> int:
-        self.slots += 1
-        return self.slots - 1
-
     def _variables(self, kind: Type, name: str, base: Type, is_global: bool) -> list[Run]:
         """Read the rest of a declaration of variables; return statements that give the variables their first values.
 

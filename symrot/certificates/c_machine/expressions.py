@@ -44,7 +44,7 @@ _OPERATIONS: Mapping[str, Callable[[Any, Any], Any]] = {
 
 
 class Expressions(Reader):
-    """Reader of C expressions: each method reads one from the tokens and returns it compiled, as a :class:`Value`."""
+    """Reader of C expressions: it reads an expression from the tokens and returns it compiled, as a :class:`Value`."""
 
     def _expression(self) -> Value:
         value = self._assignment()
@@ -62,13 +62,29 @@ class Expressions(Reader):
             raise self._fail("a variable before the assignment")
         value, place, kind = self._assignment(), target.place, target.type
         if mark != "=":
-            value = self._binary(mark[:-1], target, value)
+            return self._changed(mark[:-1], kind, place, value)
         run = self._converted(value, kind)
 
         def assign(f: Frame) -> Any:
             result = run(f)
             container, index = place(f)
             container[index] = result
+            return result
+
+        return Value(kind, assign)
+
+    def _changed(self, mark: str, kind: Type, place: Run, value: Value) -> Value:
+        """Return a compiled assignment such as ``a[i++] += b``, which computes the address of the variable once.
+
+        ``mark`` is the operation, such as ``+``; ``kind`` and ``place`` are the variable's type and compiled address.
+        """
+        slot = self._slot()  # for the address
+        before = self._at(kind, lambda f: f[slot])
+        run = self._converted(self._binary(mark, before, value), kind)
+
+        def assign(f: Frame) -> Any:
+            f[slot] = container, index = place(f)
+            container[index] = result = run(f)
             return result
 
         return Value(kind, assign)
@@ -125,7 +141,7 @@ class Expressions(Reader):
 
             def moved(f: Frame) -> Place:
                 container, index = a(f)
-                return container, index + sign * b(f)
+                return container, _within(index + sign * b(f))
 
             return Value(Type("pointer", left.type.of), moved)
         if mark in ("==", "!="):
@@ -232,15 +248,12 @@ class Expressions(Reader):
 
     def _element(self, array: Value, index: Value) -> Value:
         if array.type.kind not in ("array", "pointer") or index.type != INT:
-            raise self._fail("an array and a whole number")
+            raise self._fail("an index that is an integer, after an array or a pointer")
         start, number = array.run, index.run
 
         def place(f: Frame) -> Place:
             container, first = start(f)
-            position = first + number(f)
-            if position < 0:
-                raise CertificateError("expected an index within an array, got a negative one")
-            return container, position
+            return container, _within(first + number(f))
 
         return self._at(array.type.of, place)
 
@@ -293,6 +306,8 @@ class Expressions(Reader):
 
     def _literal(self, text: str) -> Value:
         if text.isdigit():
+            if text[0] == "0" and text != "0":
+                raise self._fail("a decimal number before this, not an octal one")
             whole = int(text)
             return Value(INT, lambda f: whole)
         exact = Fraction(float.fromhex(text) if text[:2] in ("0x", "0X") else float(text))
@@ -332,6 +347,13 @@ class Expressions(Reader):
         if kind.kind == "struct":
             return lambda f: copied(run(f))
         return run
+
+
+def _within(position: int) -> int:
+    """Return an index of an array; raise CertificateError if it is negative, since Python would count from the end."""
+    if position < 0:
+        raise CertificateError("expected an index within an array, got a negative one")
+    return position
 
 
 def _boxed(run: Run) -> Run:

@@ -52,7 +52,6 @@ class _Preprocessor:
         self.macros: dict[str, _Macro] = {}
         self.active = [True]  # whether the text of each open #if is used
         self.chosen = [True]  # whether a branch of each open #if has been used
-        self.pending: list[Token] = []
 
     def directive(self, text: str, line: int) -> None:
         word, _, rest = text[1:].strip().partition(" ")

@@ -31,11 +31,16 @@ class Reader:
         self.globals: Frame = []
         self.scopes: list[dict[str, tuple[Type, bool, int]]] = [{}]  # name -> type, whether it is global, slot
         self.slots = 0
+        self.result = VOID  # of the function that is being read
         self.steps = 0
 
     @property
     def _text(self) -> str:
         return self.tokens[self.index].text if self.index < len(self.tokens) else ""
+
+    def _slot(self) -> int:
+        self.slots += 1
+        return self.slots - 1
 
     def _fail(self, expected: str) -> CertificateError:
         line = self.tokens[min(self.index, len(self.tokens) - 1)].line

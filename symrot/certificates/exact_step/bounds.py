@@ -318,8 +318,8 @@ def free_body_bounds(source: str, name: str, moments: list[float], box: Box) -> 
     Raises
     ------
     InputError
-        If the box contains states near a rotation about the middle axis or near rest, where no bounds are known, or
-        if an error has no bound for another reason, such as steps of too many revolutions.
+        If no bounds are known: near a rotation about the middle axis, for omega whose size varies by a factor above
+        about 2^8, for steps of too many revolutions, or for ranges that are too wide.
     CertificateError
         If the C text is no exact step of a free body.
     """

@@ -1,6 +1,7 @@
 """The parts of a box of angular velocities on which errors of an exact step are bounded one by one.
 
-A part contains numbers of one sign for each component, all scaled by the same power of two in the C text.
+In a part, no component of the angular velocity changes its sign, and the C text scales all angular velocities by the
+same power of two.
 """
 
 from collections.abc import Iterator, Mapping

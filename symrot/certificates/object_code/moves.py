@@ -51,7 +51,7 @@ def run_vector_instruction(state: MachineState, instruction: Instruction) -> Non
         bare = f"{bare} by words"
     operation = SHUFFLES.get(bare) or NUMERIC.get(bare)
     if operation is None or not operands:
-        raise NotUnderstood("expected an instruction whose effect is known, got another")
+        raise NotUnderstood(f"expected a machine instruction that symrot can execute, got {bare}")
     target = operands[0]
     if isinstance(target, Memory):  # vextractf128
         words = operation(state, [_source(state, instruction, item, 32, bare) for item in operands[1:]], constant or 0)

@@ -218,7 +218,7 @@ class Terms:
         return self._add("xor", width, *sorted((a, b)))
 
     def neg(self, a: int) -> int:
-        """Return the term ``-a``: the bits of ``a`` with the sign bit inverted."""
+        """Return the number of the term -a for term number ``a``: the bits of a double, with the sign bit inverted."""
         node = self.nodes[a]
         if node[0] == "bits":
             return self.bits(node[1], node[2] ^ self._sign_bit(a))

@@ -199,10 +199,10 @@ class _BoundSearch:
     def best(
         self, parts: _Parts, relative: Array, otherwise: NDArray[np.int64]
     ) -> tuple[NDArray[np.int64], NDArray[np.int64]]:
-        """Return, for each part, the best input in which to halve it, and the second best input (or -1).
+        """Return, for each part of the box, the input whose range to halve best, and the second best input (or -1).
 
-        ``relative`` has the widths of the parts in each input, relative to the whole box. For a part whose bound no
-        halving lowers, the best input is the entry of ``otherwise``.
+        Halving the range of the best input lowers the bound of the part most; where no input lowers it, the entry of
+        ``otherwise`` is the best. ``relative`` has the widths of the ranges, divided by those of the whole box.
         """
         # the best: shrinking its range lowers the bound most
         inputs, count = parts.boxes.shape[1:]

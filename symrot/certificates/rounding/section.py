@@ -242,9 +242,9 @@ def check_bounds(
                 raise CertificateError(str(reason)) from None
             if not _alike(item, recomputed):
                 raise CertificateError(
-                    f"{operations.name}: expected the certificate's error bound of {place} to be {recomputed['units']} "
-                    f"units of {unit:g}, as symrot computes it now on the same ranges, got {item['units']} units or "
-                    "other details; certify the kernel again"
+                    f"{operations.name}: expected for {place} the error bound that symrot computes on the same ranges, "
+                    f"{recomputed['units']} units of {unit:g}, and its details, got {item['units']} units or other "
+                    "details; certify the kernel again"
                 )
 
 

@@ -26,13 +26,14 @@ class Quantity:
     synonyms : tuple of str
         Other phrases for it.
     formulas : tuple of str
-        Phrases: the name of a derived formula for the quantity contains at least one of these.
+        Phrases of which a formula for the quantity has at least one in its name.
     symbols : str
         A pattern of the symbols that derived formulas use for it; empty if they use none.
     unit : str
         Its unit, "1" for a number; empty if its entries have several units.
     sign : str
-        "minus" or "plus" for a product of inertia whose words say that it is defined with or without the minus sign.
+        "minus" for a product of inertia that its title defines with the minus sign, as in -m x y, "plus" for one that
+        its title defines without it, and empty for all other quantities.
     """
 
     title: str

@@ -173,9 +173,11 @@ def _matches(pattern: re.Pattern[str], leaf: Expr) -> bool:
 
 
 def branch_requirements(ring: FormulaRing, numerators: Sequence[PolyElement]) -> list[Requirement] | None:
-    """Return [condition] with the signs that make a claim with square roots true: ``x >= 0`` for ``sqrt(x**2) == x``.
+    """Return a list with the one condition under which a claim with square roots is true: ``x >= 0`` for
+    ``sqrt(x**2) == x``.
 
-    Return [] if these signs always hold, and None if no such signs are known.
+    ``numerators`` are those of the differences between left and right sides. Return [] if the condition always holds,
+    and None if no condition is known.
     """
     for root, place in ring.roots.items():
         if root.index != 2 or root.expression.is_number:

@@ -38,7 +38,7 @@ MOST_TERMS = 60
 """The largest number of terms in a sum that is factored to become one term."""
 
 MOST_LETTERS = 240
-"""The largest number of characters in a term that a repair may add."""
+"""The largest number of characters in a term that a repair may add to a side of a claim."""
 
 MOST_TERMS_READ, MOST_ROOTS_READ = 1000, 12
 """Largest numbers of terms and of roots in the difference of the two sides, if a missing term is sought in it."""

@@ -12,6 +12,9 @@ typedef struct {
     dd ya, yb; /* zeros of theta1 and theta2 */
 } nutation;
 
+/* Distance of S3 beyond which the sum of the other roots follows from c, not from b. */
+#define FAR 16.0
+
 static double outer_root(double b, double c, double d, double x)
 {
     for (int n = 0; n < 200; ++n) {
@@ -80,7 +83,9 @@ static void find_roots(nutation *n, dd w2, dd y)
         n->gap12 = dd_sub(x1, x2);
     } else {
         x3 = polished(b, c, d, last);
-        const dd product = dd_div(size, x3), sum = dd_negative(dd_add(b, x3)); /* x1 x2 <= 0, x1 + x2 */
+        const dd product = dd_div(size, x3); /* x1 x2 <= 0 */
+        /* x1 + x2; under a weak pull, b and x3 are large and would cancel */
+        const dd sum = x3.hi < -FAR ? dd_div(dd_sub(c, product), x3) : dd_negative(dd_add(b, x3));
         n->gap12 = dd_sqrt(dd_sub(dd_square(sum), dd_scale(product, 4.0)));
         const dd larger = dd_scale(dd_add(n->gap12, dd_abs(sum)), 0.5);
         x1 = sum.hi >= 0.0 ? larger : dd_negative(ratio(product, larger));

@@ -304,7 +304,7 @@ def _roots(pull: Any, twice: Any, d: Any, spin: Any) -> list[Any]:
     roots = sorted((mp.re(x) for x in mp.polyroots(cubic, maxsteps=400, extraprec=800)), reverse=True)
     s1, s2, s3 = roots
     s3, s2, s1 = min(s3, mpf(0)), max(s2, mpf(0)), min(s1, mpf(2))
-    size = max(abs(x) for x in roots)
+    size = max(s1, min(-s3, mpf(2)))  # S1 and S2 are at most 2, but -S3 grows without limit as the pull vanishes
     if s1 - s2 < EQUAL * size:
         s2 = s1
     if s2 - s3 < EQUAL * size:

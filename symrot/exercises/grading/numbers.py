@@ -22,6 +22,7 @@ TOLERANCE = 0.005
 
 FEWEST_DIGITS = 2  # significant digits from which a correctly rounded number is right, whatever its relative error
 SMALL = 1e-12  # difference below which two numbers count as equal
+LONGEST_UNIT = 60  # largest number of characters of a unit that is read
 
 _LATEX = (
     (r"\\d?t?frac\{([^{}]*)\}\{([^{}]*)\}", r"(\1)/(\2)"), (r"\\sqrt\{([^{}]*)\}", r"sqrt(\1)"),
@@ -106,7 +107,7 @@ def _read(text: str) -> _Number | None:
 
     Return None if the text is not a number, with or without a unit.
     """
-    for end in range(len(text), 0, -1):
+    for end in range(len(text), max(0, len(text) - LONGEST_UNIT), -1):
         rest = text[end:].strip().removeprefix("*")
         if end < len(text) and (text[end - 1].isalnum() and text[end].isalnum() and not text[end - 1].isdigit()):
             continue

@@ -179,7 +179,9 @@ class _Interpreter(Cursor):
         values = self.listed(self.sum, CLOSING[opening])
         if opening == "[" and self.at_skew():
             if not isinstance(values[0], MatrixBase) or values[0].shape != (3, 1):
-                raise self.fail("a vector before the index \\times, which makes its cross-product matrix")
+                raise self.fail(
+                    "a vector in the brackets before the subscript \\times, which stands for a cross-product matrix"
+                )
             self.next()
             return Matrix(values[0].hat())
         return values[0] if len(values) == 1 else Matrix.vstack(*map(_as_matrix, values))

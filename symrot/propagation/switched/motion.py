@@ -115,9 +115,10 @@ def _switchings(changes: dict[tuple[float, str], str]) -> list[Switching]:
 
 
 class SwitchedRecording(Recording):
-    """A function from times to states, made of smooth intervals of a motion; NaN at times after the last interval.
+    """A function from times to states, made of smooth intervals of a motion.
 
-    If a motion backward in time stopped early, the states at times before its stop mean nothing.
+    If the motion stopped early, the states at times that it did not reach are NaN forward in time, and meaningless
+    numbers backward in time.
     """
 
     def __init__(

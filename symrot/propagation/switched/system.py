@@ -105,7 +105,10 @@ class SwitchedSystem:
         return {"pi": PI, **self.plan.constants}
 
     def initial_modes(self) -> Modes:
-        """Return the initial values of all switching functions, by name; sign(x) is 1 if x is zero but not constant."""
+        """Return the initial values of all switching functions, by name.
+
+        The sign or absolute value of an argument that starts at zero and depends on the state has the sign 1 at first.
+        """
         # the motion determines later whether sign(0) becomes 1 or -1
         return dict(self._initial_modes[0])
 

@@ -18,7 +18,7 @@ from symrot.checker.repair.edits.names import neighbours
 __all__ = ["LEAST_SYMBOLS_EDITED", "is_evident", "is_inverted", "is_of_body", "is_steady", "says_too_little"]
 
 LEAST_SYMBOLS_EDITED = 3
-"""The smallest number of symbols in a scalar formula that is edited."""
+"""The smallest number of quantities in a scalar formula that may be called a known formula with a wrong symbol."""
 
 MANY_LETTERS = 5
 """A formula for a quantity of unknown name, one fault away from a known formula, is usually called faulty only if it
