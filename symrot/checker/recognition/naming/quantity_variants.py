@@ -126,8 +126,7 @@ def by_lengths(named: NamedFormula, judge: Callable[[NamedFormula], Verdict]) ->
 
 
 def _note(square: Node, whole: Node) -> str:
-    """Return the note for the user that ``square`` (sigma^2) is read as the sum ``whole`` (sigma_1^2 + sigma_2^2 + ..).
-    """
+    """Return the note for the user that ``square``, sigma^2, is read as ``whole``, sigma_1^2 + sigma_2^2 + ..."""
     names = [str(term.args[0].value) for term in whole.args]
     return f"{square.args[0].value}^2 is read as the sum of the squares of {', '.join(names[:-1])} and {names[-1]}"
 
