@@ -24,8 +24,8 @@ With fewer quantities, an edited formula, such as one with another sign, may equ
 """
 
 MANY_LETTERS = 5
-"""The smallest number of letters in a formula that is usually called faulty because one change makes it a known formula,
-if the quantity's name has no usual meaning. A formula with fewer letters may be right for something else.
+"""The smallest number of letters in a formula that is usually called faulty because one change makes it a known one, if
+the quantity's name has no usual meaning. A formula with fewer letters may be right for something else.
 """
 
 MANY_OCCURRENCES = 4
