@@ -79,9 +79,9 @@ class ShiftedParameters:
         self._lines = [_line(node) for node in self._formulas]
 
     def parameters(self, epoch: float | Fraction) -> list[float]:
-        """Return the values of all formulas, in order, for the epoch at which the clock of the motion shows ``epoch``, s.
+        """Return the values of all formulas, in order, for one epoch; ``epoch`` is its time on the motion's clock, s.
 
-        As a time of the scene, this epoch is ``start`` + ``epoch``, where ``start`` is an argument of the constructor.
+        The time of the scene is ``start`` + ``epoch``, where ``start`` is an argument of the constructor.
 
         Each value is computed exactly, or to many more digits than a double has, and rounded once; it is NaN where the
         formula has no real value. Raise IntegrationStopped if a value exceeds the range of doubles.

@@ -157,7 +157,7 @@ class Regime:
         }
 
     def bound(self, modes: Modes, zero: Instant) -> tuple[list[float], list[float]]:
-        """Return the values of the equations' parameters, as two lists: for the stepper and for the search for switches.
+        """Return the values of the equations' parameters: a list for the stepper, and one for the search for switches.
 
         ``modes`` has the present values of the functions (sign, abs, ..). The equations count time from the instant
         ``zero``, on which the parameters may depend.
