@@ -52,15 +52,29 @@ class FlagRule:
     takes_next: bool = False  # whether the next word is the flag's argument
 
 
-FAST = ("reassociation", "reciprocals", "finite numbers only", "unsigned zeros", "approximate functions")
+# properties of -ffast-math; clang 14 does not take the last one back under -ffp-model=precise and =strict
+FAST = ("reassociation", "reciprocals", "no infinities", "no NaN", "unsigned zeros", "approximate functions")
+FAST_MATH = (
+    "sums in another order, reciprocals, finite numbers only, unsigned zeros; when linking, it also sets flush to zero "
+    "for the whole process"
+)
+FINITE = "comparisons and ranges assume that there are no infinities and no NaN"
+FLUSHED = "numbers below 2^-1022 (floats: 2^-126) become zero"
+RECIPROCAL = "x/y becomes x*(1/y): one rounding more"
+APPROXIMATE = "square roots and functions of libm may be replaced by less accurate ones"
 EXCESS = "numbers are kept with more digits than their type and rounded twice (FLT_EVAL_METHOD != 0)"
 VOID: dict[str, str] = {  # property that a flag switches on -> why it voids the certificate
     "reassociation": "sums and products are computed in another order: other roundings",
-    "reciprocals": "x/y becomes x*(1/y): one rounding more",
-    "finite numbers only": "comparisons and ranges assume that there are no infinities and no NaN",
+    "reciprocals": RECIPROCAL,
+    "reciprocal instructions": RECIPROCAL,
+    "no infinities": FINITE,
+    "no NaN": FINITE,
     "unsigned zeros": "the sign of a zero may change, which affects atan2, copysign and division",
-    "approximate functions": "square roots and functions of libm may be replaced by less accurate ones",
-    "flush to zero": "numbers below 2^-1022 (floats: 2^-126) become zero",
+    "approximate functions": APPROXIMATE,
+    "vector functions": APPROXIMATE,
+    "flush to zero": FLUSHED,
+    "flush to zero at start": FLUSHED,
+    "flush to zero of floats": FLUSHED,
     "excess precision": EXCESS,
     "32-bit code": EXCESS,
     "no SSE2": EXCESS,
@@ -71,30 +85,40 @@ TABLE: tuple[FlagRule, ...] = (
     FlagRule(r"-ffp-contract=off", "no contraction: otherwise the bits of results may differ from those of the C text",
              clears=("contraction",)),
     FlagRule(r"-ffp-contract=(fast|on|fast-honor-pragmas)", CONTRACTION, sets=("contraction",)),
-    FlagRule(r"-ffast-math|-Ofast", "sums in another order, reciprocals, finite numbers only, unsigned zeros; "
-             "when linking, it also sets flush to zero for the whole process",
-             sets=(*FAST, "flush to zero", "contraction")),
+    FlagRule(r"-Ofast", FAST_MATH,  # clang flushes small numbers to zero also if -fno-fast-math follows
+             sets=(*FAST, "flush to zero", "flush to zero at start", "contraction")),
+    FlagRule(r"-ffast-math", FAST_MATH, sets=(*FAST, "flush to zero", "contraction")),
     FlagRule(r"-fno-fast-math", "takes -ffast-math back", clears=(*FAST, "flush to zero")),
     FlagRule(r"-funsafe-math-optimizations", "sums in another order, reciprocals, unsigned zeros; when linking, "
-             "it also sets flush to zero", sets=("reassociation", "reciprocals", "unsigned zeros", "flush to zero")),
+             "it also sets flush to zero",
+             sets=("reassociation", "reciprocals", "unsigned zeros", "approximate functions", "flush to zero")),
     FlagRule(r"-fno-unsafe-math-optimizations", "takes -funsafe-math-optimizations back",
-             clears=("reassociation", "reciprocals", "unsigned zeros", "flush to zero")),
+             clears=("reassociation", "reciprocals", "unsigned zeros", "approximate functions", "flush to zero")),
     FlagRule(r"-fassociative-math", VOID["reassociation"], sets=("reassociation",)),
     FlagRule(r"-fno-associative-math", "keeps the order of the sums and products in the C text",
              clears=("reassociation",)),
-    FlagRule(r"-freciprocal-math|-mrecip(=.*)?", VOID["reciprocals"], sets=("reciprocals",)),
-    FlagRule(r"-fno-reciprocal-math|-mno-recip", "keeps divisions", clears=("reciprocals",)),
-    FlagRule(r"-ffinite-math-only|-fno-honor-(nans|infinities)", VOID["finite numbers only"],
-             sets=("finite numbers only",)),
-    FlagRule(r"-fno-finite-math-only|-fhonor-(nans|infinities)", "keeps infinities and NaN",
-             clears=("finite numbers only",)),
+    FlagRule(r"-freciprocal-math", RECIPROCAL, sets=("reciprocals",)),
+    FlagRule(r"-fno-reciprocal-math", "keeps divisions", clears=("reciprocals",)),
+    FlagRule(r"-mno-recip|-mrecip=none", "keeps divisions", clears=("reciprocal instructions",)),
+    FlagRule(r"-mrecip(=.*)?", RECIPROCAL, sets=("reciprocal instructions",)),
+    FlagRule(r"-ffinite-math-only", FINITE, sets=("no infinities", "no NaN")),
+    FlagRule(r"-fno-finite-math-only", "keeps infinities and NaN", clears=("no infinities", "no NaN")),
+    FlagRule(r"-fno-honor-nans", FINITE, sets=("no NaN",)),
+    FlagRule(r"-fno-honor-infinities", FINITE, sets=("no infinities",)),
+    FlagRule(r"-fhonor-nans", "keeps NaN", clears=("no NaN",)),
+    FlagRule(r"-fhonor-infinities", "keeps infinities", clears=("no infinities",)),
     FlagRule(r"-fno-signed-zeros", VOID["unsigned zeros"], sets=("unsigned zeros",)),
     FlagRule(r"-fsigned-zeros", "keeps the sign of zeros", clears=("unsigned zeros",)),
-    FlagRule(r"-fapprox-func|-fveclib=.*|-mveclibabi=.*", VOID["approximate functions"],
-             sets=("approximate functions",)),
+    FlagRule(r"-fapprox-func", APPROXIMATE, sets=("approximate functions",)),
+    FlagRule(r"-fveclib=none", "keeps the functions of libm", clears=("vector functions",)),
+    FlagRule(r"-fveclib=.*|-mveclibabi=.*", APPROXIMATE, sets=("vector functions",)),
     FlagRule(r"-fno-approx-func", "keeps the functions of libm", clears=("approximate functions",)),
-    FlagRule(r"-mdaz-ftz|-f?denormal-fp-math(-f32)?=(?!ieee).*", VOID["flush to zero"], sets=("flush to zero",)),
-    FlagRule(r"-mno-daz-ftz|-fdenormal-fp-math(-f32)?=ieee(,ieee)?", "keeps small numbers", clears=("flush to zero",)),
+    FlagRule(r"-mdaz-ftz", FLUSHED, sets=("flush to zero at start",)),
+    FlagRule(r"-mno-daz-ftz", "keeps small numbers", clears=("flush to zero", "flush to zero at start")),
+    FlagRule(r"-fdenormal-fp-math=ieee(,ieee)?", "keeps small numbers", clears=("flush to zero",)),
+    FlagRule(r"-fdenormal-fp-math-f32=ieee(,ieee)?", "keeps small floats"),
+    FlagRule(r"-fdenormal-fp-math=.*", FLUSHED, sets=("flush to zero",)),
+    FlagRule(r"-fdenormal-fp-math-f32=.*", FLUSHED, sets=("flush to zero of floats",)),
     FlagRule(r"-mfpmath=(387|both|sse[+,]387|387[+,]sse)|-mlong-double-64", EXCESS, sets=("excess precision",),
              clears=("SSE arithmetic",)),
     FlagRule(r"-mfpmath=sse", "each operation is rounded to its type, if the processor has SSE2",
@@ -106,8 +130,8 @@ TABLE: tuple[FlagRule, ...] = (
     FlagRule(r"-fexcess-precision=(standard|fast)|-ffloat-store", "of no effect where FLT_EVAL_METHOD is 0"),
     FlagRule(r"-fexcess-precision=16|-fsingle-precision-constant", VOID["float literals"], sets=("float literals",)),
     FlagRule(r"-ffp-model=strict", "no contraction, all roundings kept",
-             clears=(*FAST, "contraction", "flush to zero")),
-    FlagRule(r"-ffp-model=precise", CONTRACTION, sets=("contraction",), clears=(*FAST, "flush to zero")),
+             clears=(*FAST[:-1], "contraction", "flush to zero")),
+    FlagRule(r"-ffp-model=precise", CONTRACTION, sets=("contraction",), clears=(*FAST[:-1], "flush to zero")),
     FlagRule(r"-ffp-model=(fast|aggressive)", "as -ffast-math", sets=(*FAST, "flush to zero", "contraction")),
     FlagRule(r"-ffp-exception-behavior=\w+|-f(no-)?trapping-math|-f(no-)?signaling-nans",
              "exceptions are not certified"),
@@ -185,10 +209,10 @@ class FlagEffect:
             BOUNDS: "the error bounds hold, but the bits of results may differ from those of the C text",
             NOTHING: "the certificate is void",
         }[self.holds]
-        why: dict[str, list[str]] = {}
+        why: dict[str, dict[str, None]] = {}  # a flag may set two properties with one reason
         for remark in self.remarks:
             if remark.effect == self.holds:
-                why.setdefault(remark.flag, []).append(remark.reason)
+                why.setdefault(remark.flag, {})[remark.reason] = None
         listed = "; ".join(f"{flag}: {', '.join(reasons)}" for flag, reasons in why.items())
         return f"{effect} ({listed})" if listed else effect
 

@@ -15,7 +15,16 @@ from sympy import Expr, S, pi
 
 from symrot.exact.limits.operations import spend
 
-__all__ = ["DIGITS", "INTERVAL", "Undefined", "as_interval", "enclosure", "fraction_of_end", "is_nonnegative_at"]
+__all__ = [
+    "DIGITS",
+    "INTERVAL",
+    "Undefined",
+    "arc_tangent",
+    "as_interval",
+    "enclosure",
+    "fraction_of_end",
+    "is_nonnegative_at",
+]
 
 DIGITS = 50
 
@@ -32,14 +41,22 @@ class Undefined(ValueError):
     """The exception for a formula that is proven to have no real value at a point."""
 
 
+def arc_tangent(y: Any, x: Any) -> Any:
+    """Return an interval that contains atan2(y, x) for all numbers in the intervals ``y`` and ``x``, not both zero."""
+    if x.b < 0 and y.a < 0 <= y.b:  # atan2 jumps at y = 0; for y.b = 0, mpmath returns an interval from pi to -pi
+        return iv.mpf([-1, 1]) * iv.pi
+    # mpmath rounds an end to four more bits and then to the precision, which may move it inward
+    return iv.atan2(y, x) * (1 + iv.mpf(2) ** (1 - iv.prec) * iv.mpf([-1, 1]))
+
+
 def _asin(x: Any) -> Any:
     _refuse(x.a > 1 or x.b < -1)
-    return iv.atan2(x, _root(1 - x * x))
+    return arc_tangent(x, _root(1 - x * x))
 
 
 def _acos(x: Any) -> Any:
     _refuse(x.a > 1 or x.b < -1)
-    return iv.atan2(_root(1 - x * x), x)
+    return arc_tangent(_root(1 - x * x), x)
 
 
 def _refuse(outside: bool) -> None:
@@ -64,7 +81,7 @@ def _log(x: Any) -> Any:
 def _atan2(y: Any, x: Any) -> Any:
     if 0 in y and 0 in x:
         raise ValueError("expected atan2(y, x) away from the origin, where it is undefined")
-    return iv.atan2(y, x)
+    return arc_tangent(y, x)
 
 
 def _bounded(x: Any) -> Any:
@@ -95,7 +112,7 @@ INTERVAL = {
     sympy.csc: lambda x: _over(1, iv.sin(x)),
     sympy.asin: _asin,
     sympy.acos: _acos,
-    sympy.atan: lambda x: iv.atan2(x, iv.mpf(1)),
+    sympy.atan: lambda x: arc_tangent(x, iv.mpf(1)),
     sympy.atan2: _atan2,
     sympy.exp: iv.exp,
     sympy.log: _log,

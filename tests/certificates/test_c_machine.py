@@ -1,5 +1,7 @@
 """The machine that runs C in Python obeys the rules of C, and refuses faulty texts."""
 
+from fractions import Fraction
+
 import pytest
 
 from symrot.certificates.c_machine.machine import Machine
@@ -34,3 +36,21 @@ def test_an_assignment_with_an_operation_computes_its_address_once():
 def test_an_index_before_an_array_and_an_octal_number_are_refused(text):
     with pytest.raises(CertificateError, match=r"negative|octal"):
         Machine(f"double f(double *x) {{ return {text}; }}", float, {}).call("f", ([1.0, 2.0], 0))
+
+
+def test_a_result_is_converted_to_the_type_of_its_function():
+    """The function ``truncated`` returns 2 for 2.5, and ``half`` a number, of which 1/2 is 0.5."""
+    text = (
+        "int truncated(double x) { return x; } double half(void) { return 1; } "
+        "double f(double x) { return truncated(x) + half()/2; }"
+    )
+    machine = Machine(text, Fraction, {})
+    assert machine.call("f", Fraction(5, 2)) == Fraction(5, 2) and machine.call("truncated", Fraction(-5, 2)) == -2
+    assert isinstance(machine.call("half"), Fraction)
+
+
+def test_a_variable_that_keeps_its_value_is_refused():
+    text = "int f(void) { static int calls = 0; calls += 1; return calls; }"
+    with pytest.raises(CertificateError, match="from call to call"):
+        Machine(text, float, {})
+    assert Machine(text.replace("static", "static const").replace("calls += 1;", ""), float, {}).call("f") == 0

@@ -98,6 +98,7 @@ def test_functions_of_the_file_and_choices_are_read():
         ("cos(t)", "cosh2(t)", "function of <math.h>"),
         ("cos(t)", "cosf(t)", "function of <math.h>"),
         ("cos(t)", "cos(t, t)", "function of <math.h>"),
+        ("cos(t)", "cos(--t)", "a name"),  # not t, but t - 1
         ("y[1] -", "y[2] -", "below 2"),
         ("dy[1]", "dy[0]", "one assignment"),
         ("dy[1]", "dy[01]", "an index"),  # octal in C
@@ -154,6 +155,15 @@ def test_a_batch_in_blocks_is_read_whole_or_refused(old, new, said):
     assert old in BLOCKS[start:]
     with pytest.raises(CertificateError, match=re.escape(said)):
         read_batch(BLOCKS[:start] + BLOCKS[start:].replace(old, new, 1), "symrot_euler_zxz_body_rates_batch", "x.c")
+
+
+@pytest.mark.parametrize("name", ["n", "x"])
+def test_an_index_of_samples_that_hides_another_variable_is_refused(name):
+    """C runs no sample if the index hides the number of samples: ``n < n`` is false."""
+    text = "void f_batch(size_t n, const double *x, double *y) { for (size_t k = 0; k < n; ++k) { y[k] = 2.0*x[k]; } }"
+    assert read_batch(text, "f_batch").nodes
+    with pytest.raises(CertificateError, match="not yet used"):
+        read_batch(text.replace("k", name), "f_batch")
 
 
 def test_sine_of_symrot_is_for_batches_alone():

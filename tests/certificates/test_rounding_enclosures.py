@@ -1,5 +1,7 @@
 """The intervals from which rounding bounds are computed: slopes of an angle, unit quaternions in a box, branches."""
 
+from fractions import Fraction
+
 import numpy as np
 import pytest
 
@@ -65,3 +67,21 @@ def test_what_a_branch_tells_holds_of_computed_numbers(relation):
         wrong = (1 - truth).astype(np.int8)
         apart = (boxes[i][0] > boxes[j][1]) | (boxes[i][1] < boxes[j][0])
         assert decide_branches(relation, boxes[i], boxes[j], wrong)[0][apart].all()
+
+
+@pytest.mark.parametrize(("name", "at_zero"), [("sine_gap", Fraction(1, 6)), ("tangent_gap", Fraction(1, 3))])
+def test_the_value_at_zero_is_in_the_interval_of_all_angles(name, at_zero):
+    """The double nearest to 1/3 is below 1/3."""
+    low, high = getattr(functions, name)(np.array([[-9.0], [9.0]]))[:, 0]
+    assert Fraction(float(low)) <= -at_zero and at_zero <= Fraction(float(high))
+
+
+@pytest.mark.parametrize(
+    ("y", "x", "angle"),
+    [((1.0, 1.0), (5e-324, 5e-324), np.pi / 2), ((-1.0, 5.7), (5e-324, 1.0), np.pi / 2), ((-1.0, 5.7), (5e-324, 1.0), -np.pi / 2),
+     ((5e-324, 1e-100), (-58.0, -57.0), np.pi), ((-1e-100, -5e-324), (-58.0, -57.0), -np.pi), ((5e-324, 1.0), (57.0, 58.0), 0.0)],
+)  # fmt: skip
+def test_an_angle_is_enclosed_also_if_its_tangent_overflows(y, x, angle):
+    with np.errstate(all="ignore"):
+        low, high = functions.arc_tangent(np.array([[y[0]], [y[1]]]), np.array([[x[0]], [x[1]]]))[:, 0]
+    assert low <= angle <= high and high - low <= np.pi + 1e-12

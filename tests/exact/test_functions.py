@@ -8,7 +8,7 @@ from fractions import Fraction
 from random import Random
 
 import pytest
-from mpmath import mp
+from mpmath import iv, mp
 from sympy import (
     Abs,
     Integer,
@@ -37,6 +37,7 @@ from symrot.errors import InputError
 from symrot.exact import is_zero, normal_form
 from symrot.exact.angles import cyclotomic
 from symrot.exact.decide import decide
+from symrot.exact.intervals import arc_tangent
 
 x, y = symbols("x y", real=True)
 p = symbols("p", positive=True)
@@ -157,6 +158,13 @@ def test_on_the_cut_of_atan2_nothing_is_claimed():
     verdict = symrot.check("atan2(y, x) == 2*atan2(y, x + sqrt(x**2 + y**2))")
     assert verdict.verdict == "true"
     assert any("sqrt(x**2 + y**2)" in condition and "!= 0" in condition for condition in verdict.conditions)
+
+
+def test_an_interval_that_touches_the_cut_of_atan2_from_below_refutes_nothing():
+    """At x = 1 the square is 0, of which only an interval is known: atan2 has the value pi there, or is near -pi."""
+    x = symbols("x", real=True)
+    square = (sqrt(3) * sqrt(2 + x) - 3) ** 2
+    assert decide(Abs(atan2(-square, -1)), pi - atan(square)).verdict != "false"
 
 
 @pytest.mark.parametrize("claim", ["asin(2) == 1", "acos(-3/2) == 1", "log(-2) == 1", "log(0) == 1"])
@@ -360,3 +368,21 @@ def test_numbers_outside_of_a_range_make_a_claim_false_not_its_sides_undefined(c
 def test_an_arc_cosine_near_zero_is_not_zero(claim):
     """SymPy rounds tanh(10) to 1, and then takes its arc cosine for zero."""
     assert symrot.check(claim, repair=False).verdict == "false"
+
+
+@pytest.mark.parametrize("bits", [64, 170])
+def test_an_arc_tangent_is_within_its_interval(bits):
+    """mpmath's own interval of 1.25 at 64 bits, among others, does not contain the arc tangent."""
+    random, before = Random(5), iv.prec
+    try:
+        for _ in range(300):
+            y, x = random.uniform(-9, 9), random.choice([1.0, random.uniform(-9, 9)])
+            iv.prec = bits
+            angle = arc_tangent(iv.mpf(y), iv.mpf(x))
+            with mp.workprec(400):
+                exact = mp.atan2(y, x)
+                assert mp.mpf(angle.a) <= exact <= mp.mpf(angle.b), (y, x)
+                assert angle.delta < 2.0 ** (5 - bits)
+        assert arc_tangent(iv.mpf(0), iv.mpf(2)) == 0
+    finally:
+        iv.prec = before

@@ -105,6 +105,7 @@ class Machine(Statements):
             if name in self.own:
                 self._skip_block()
             else:
+                self.result = kind
                 function.body.append(self._block())
                 function.slots[0] = self.slots
         self.scopes.pop()

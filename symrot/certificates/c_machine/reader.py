@@ -31,6 +31,7 @@ class Reader:
         self.globals: Frame = []
         self.scopes: list[dict[str, tuple[Type, bool, int]]] = [{}]  # name -> type, whether it is global, slot
         self.slots = 0
+        self.result = VOID  # of the function that is being read
         self.steps = 0
 
     @property

@@ -53,7 +53,11 @@ class Statements(Declarations):
 
     def _statements(self) -> list[Run]:
         if self._is_type(self._text):
+            start = self.index
             base = self._base()
+            words = [token.text for token in self.tokens[start : self.index]]
+            if "static" in words and "const" not in words:
+                raise self._fail("no variable that keeps its value from call to call")
             name, kind = self._declarator(base)
             return self._variables(kind, name, base, is_global=False)
         if self._text == "{":
@@ -157,4 +161,4 @@ class Statements(Declarations):
             return _jump(Return)
         value = self._expression()
         self._expect(";")
-        return _jump(Return, value.run)
+        return _jump(Return, self._converted(value, self.result))

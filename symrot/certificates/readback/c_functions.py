@@ -16,7 +16,7 @@ __all__ = ["CFunction", "Cursor", "Parameter", "Token", "functions_of"]
 
 _TOKEN = re.compile(
     r"(?P<space>\s+)|(?P<number>(?:0[xX][0-9a-fA-F]+\.?[0-9a-fA-F]*[pP][+-]?\d+|(?:\d+\.?\d*|\.\d+)(?:[eE][+-]?\d+)?)f?)"
-    r"|(?P<name>[A-Za-z_]\w*)|(?P<mark>\+\+|<=|>=|==|!=|[-+*/()\[\]{},;=<>?:])",
+    r"|(?P<name>[A-Za-z_]\w*)|(?P<mark>\+\+|--|<=|>=|==|!=|[-+*/()\[\]{},;=<>?:])",
     re.ASCII,
 )
 _COMMENT = re.compile(r"/\*.*?\*/|//[^\n]*", re.DOTALL)

@@ -383,6 +383,8 @@ def _samples(cursor: Cursor, scope: _Scope, start: str, end: str) -> tuple[Token
         cursor.next()
     cursor.expect("for", "(", "size_t")
     scope.loop = cursor.name()
+    if scope.loop in (scope.count, start, end, *scope.arrays):  # it would hide that variable in the loop
+        raise cursor.fail("a name that is not yet used", repr(scope.loop))
     cursor.expect("=", start, ";", scope.loop, "<", end, ";", "++", scope.loop, ")")
     return cursor.block()
 

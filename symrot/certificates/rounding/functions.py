@@ -7,7 +7,7 @@ multiples of pi/2, and Taylor series are summed. Their absolute error is below 1
 from collections.abc import Callable
 from dataclasses import dataclass
 from fractions import Fraction
-from math import factorial, pi
+from math import factorial, inf, nextafter, pi
 
 import numpy as np
 
@@ -127,6 +127,12 @@ def _over(numerator: Array, z: Array, power: int) -> Array:
     return numerator
 
 
+def _above(value: Fraction) -> float:
+    """Return a double that is not below a fraction; the double nearest to 1/3 is below it."""
+    near = float(value)
+    return near if Fraction(near) >= value else nextafter(near, inf)
+
+
 _times = multiply_loosely
 sinc = _EvenFunction(_SINC, lambda z, s, c: s, lambda z, s, c: s, 4.4, 1.0)
 sine_gap = _EvenFunction(
@@ -134,20 +140,25 @@ sine_gap = _EvenFunction(
     lambda z, s, c: (1 - s) / (z * z),
     lambda z, s, c: _over(add(np.ones_like(s), negative(s)), z, 2),
     6.0,
-    1 / 6,
+    _above(Fraction(1, 6)),
 )
 tangent_gap = _EvenFunction(
-    _TANGENT_GAP, lambda z, s, c: (s - c) / (z * z), lambda z, s, c: _over(add(s, negative(c)), z, 2), 5.7, 1 / 3
+    _TANGENT_GAP,
+    lambda z, s, c: (s - c) / (z * z),
+    lambda z, s, c: _over(add(s, negative(c)), z, 2),
+    5.7,
+    _above(Fraction(1, 3)),
 )
 _sine_gap_factor = _EvenFunction(
     _SINE_GAP_SLOPE, lambda z, s, c: (2 + c - 3 * s) / (z * z * z * z),
-    lambda z, s, c: _over(add(np.full_like(c, 2.0), add(c, _times(np.full_like(s, -3.0), s))), z, 4), 4.4, 1 / 60,
+    lambda z, s, c: _over(add(np.full_like(c, 2.0), add(c, _times(np.full_like(s, -3.0), s))), z, 4), 4.4,
+    _above(Fraction(1, 60)),
 )  # fmt: skip
 _tangent_gap_factor = _EvenFunction(
     _TANGENT_GAP_SLOPE, lambda z, s, c: ((3 - z * z) * s - 3 * c) / (z * z * z * z),
     lambda z, s, c: _over(
         add(_times(add(np.full_like(z, 3.0), negative(_times(z, z))), s), _times(np.full_like(c, -3.0), c)), z, 4
-    ), 4.4, 1 / 15,
+    ), 4.4, _above(Fraction(1, 15)),
 )  # fmt: skip
 
 
@@ -187,7 +198,9 @@ def arc_tangent(y: Array, x: Array) -> Array:
     """
     with np.errstate(all="ignore"):
         right, up = divide(y, x), divide(x, y)
-        sloped = [_arc(np.where(np.isfinite(q), q, 0.0)) for q in (right, up[::-1])]
+        # a quotient beyond the range of doubles: between it and infinity the arc tangent ends at pi/2
+        beyond = np.array([[-inf], [inf]])
+        sloped = [_arc(np.where(np.isfinite(q), q, end)) for q, end in ((right, beyond), (up[::-1], -beyond))]
     quarter = np.where(y[0] > 0, pi / 2, -pi / 2)
     angles = np.where(x[0] > 0, sloped[0], np.where(contains_zero(y), np.array([[-pi], [pi]]), quarter - sloped[1]))
     return np.clip(widened(angles, 2 * SLACK), -pi - SLACK, pi + SLACK)

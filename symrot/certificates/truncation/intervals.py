@@ -10,6 +10,7 @@ from typing import Any
 from mpmath import iv
 
 from symrot.errors import InputError
+from symrot.exact.intervals import arc_tangent
 
 __all__ = ["FUNCTIONS", "Functions", "interval", "number", "precision", "quotient", "range_of", "root", "upper"]
 
@@ -93,7 +94,7 @@ FUNCTIONS: Mapping[str, Callable[[Any], Any]] = {
     "sqrt": root, "sin": iv.sin, "cos": iv.cos, "tan": lambda x: quotient(iv.sin(x), iv.cos(x)), "exp": iv.exp,
     "log": lambda x: iv.log(_positive(x)), "sinh": lambda x: (iv.exp(x) - iv.exp(-x)) / 2,
     "cosh": lambda x: (iv.exp(x) + iv.exp(-x)) / 2, "tanh": lambda x: 1 - 2 / (iv.exp(2 * x) + 1),
-    "atan": lambda x: iv.atan2(x, iv.mpf(1)),
+    "atan": lambda x: arc_tangent(x, iv.mpf(1)),
 }  # fmt: skip
 """Functions of intervals by name; where sqrt, log or tan may not be differentiable, they raise ZeroDivisionError."""
 
