@@ -1,6 +1,6 @@
 """The functions ``check`` and ``check_file``, which return verdicts on claims."""
 
-from collections.abc import Callable, Iterator, Mapping, Sequence
+from collections.abc import Callable, Collection, Iterable, Iterator, Mapping, Sequence
 from dataclasses import replace
 from pathlib import Path
 from time import perf_counter
@@ -121,6 +121,8 @@ def check(
     'true'
     """
     stated = read_context(where, body, frame, sequence)
+    if units is not None and not isinstance(units, Mapping):
+        raise InputError(f"units: expected a mapping like {{'x': 'm'}} from names to units, got {units!r}")
     if stated and not isinstance(left, str):
         raise InputError("where, body, frame, sequence: expected these options with a claim as text, got a SymPy value")
     try:
@@ -135,8 +137,10 @@ def _checked(
     if isinstance(left, str):
         if right is not None:
             raise InputError("expected the whole claim 'left == right' as one text, got two arguments")
-        if isinstance(assume, str) or not all(isinstance(hypothesis, str) for hypothesis in assume):
-            raise InputError("assume: expected a list of texts like 'a == b', since the claim is a text")
+        if isinstance(assume, str) or not isinstance(assume, Collection) or not all(isinstance(a, str) for a in assume):
+            raise InputError(
+                f"assume: expected a list of texts like 'a == b', since the claim is a text, got {assume!r}"
+            )
         typed = _without_backticks(left).lstrip()  # places in the text count from its first character
         check_length(typed)  # before any search in the text, whose time grows with its length
         if not assume and not stated and (of_frames := verdict_on_rates(typed)) is not None:
@@ -161,6 +165,8 @@ def _checked(
         left, right = left.args
     if right is None:
         raise InputError("expected two sides, or one text 'left == right'")
+    if not isinstance(assume, Iterable):
+        raise InputError(f"assume: expected a list of hypotheses, such as [Eq(a, b)], got {assume!r}")
     for side in (left, right):
         for entry in flatten(side)[0]:
             if nesting(entry) > MOST_NESTED:

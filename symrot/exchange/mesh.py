@@ -13,6 +13,7 @@ from symrot.exchange.inertial import Inertial
 from symrot.exchange.mesh_file import read_surface
 from symrot.exchange.surface import Surface, require_closed
 from symrot.exchange.volume_moments import Exponents, VolumeMoments, approximate_moments, exact_moments, exponents
+from symrot.files.paths import path_of
 from symrot.formula.exact_numbers import read, show
 from symrot.formula.polynomial import constant, generator
 from symrot.formula.tree import parse
@@ -99,7 +100,7 @@ def mesh(path: str | Path, *, mass: Any = None, density: Any = None, scale: Any 
     >>> part = symrot.mesh("part.stl", density=2700, scale="1/1000")  # doctest: +SKIP
     >>> body = part.table()  # doctest: +SKIP
     """
-    return read_mesh(Path(path), str(path), mass=mass, density=density, scale=scale, flip=flip).inertial
+    return read_mesh(path_of(path, "mesh"), str(path), mass=mass, density=density, scale=scale, flip=flip).inertial
 
 
 def read_mesh(path: Path, where: str, *, mass: Any, density: Any, scale: Any, flip: bool) -> MeshBody:

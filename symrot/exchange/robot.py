@@ -11,6 +11,7 @@ from symrot.errors import InputError, with_hint
 from symrot.exchange.inertial import Inertial
 from symrot.exchange.orientation import ORIENTATIONS, Angles, of_quaternion, of_roll_pitch_yaw
 from symrot.exchange.xml_file import read_xml
+from symrot.files.paths import path_of
 from symrot.formula.exact_numbers import show
 from symrot.inertia.principal import principal_axes, require_admissible
 from symrot.inertia.tensor import IDENTITY, Tensor, matrix, rotate
@@ -169,7 +170,7 @@ def _listed(names: list[str]) -> str:
 
 def read_robot(path: str | Path) -> tuple[Format, Element, bytes]:
     """Return the format of a robot file (URDF, MJCF or SDF), its root element, and its bytes."""
-    content, root = read_xml(Path(path), str(path))
+    content, root = read_xml(path_of(path, "robot"), str(path))
     if root.tag not in FORMATS:
         tags = ", ".join(f"<{tag}> ({form.name})" for tag, form in FORMATS.items())
         raise InputError(f"{path}: expected a robot file, {tags}, got an XML file with the root <{root.tag[:60]}>")

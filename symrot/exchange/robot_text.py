@@ -11,6 +11,7 @@ from symrot.exchange.inertial import Inertial
 from symrot.exchange.orientation import quaternion_of, roll_pitch_yaw_of
 from symrot.exchange.robot import Format, read_robot
 from symrot.exchange.xml_file import Span, span_of
+from symrot.files.paths import path_of
 from symrot.files.writing import write
 from symrot.formula.exact_numbers import show
 from symrot.inertia.principal import Principal
@@ -54,6 +55,7 @@ def write_link(source: str | Path, name: str, inertial: Inertial, target: str | 
     >>> symrot.write_link("robot.urdf", "upper_arm", symrot.mesh("arm.stl", mass=2), "new.urdf")  # doctest: +SKIP
     """
     form, root, content = read_robot(source)
+    path = path_of(source if target is None else target, "target")
     same = [element for each, element in form.links(root) if each == name]
     if len(same) != 1:
         raise InputError(f"{source}: expected one link of the name {show(name)}, got {len(same) or 'none'}")
@@ -67,7 +69,6 @@ def write_link(source: str | Path, name: str, inertial: Inertial, target: str | 
         text = f"\n    {text}"
     result = content[: span.start] + text.encode("utf-8") + content[span.stop :]
     _require_same(form, result, name, inertial, str(source))
-    path = Path(source if target is None else target)
     write(path, lambda stream: stream.write(result))
     return path
 

@@ -12,6 +12,7 @@ import numpy as np
 
 from symrot import __version__, conventions
 from symrot.errors import InputError
+from symrot.files.paths import path_of
 from symrot.files.writing import check_target, write
 from symrot.formula.exact_numbers import show
 from symrot.report.layout import columns, exact, one_line
@@ -165,7 +166,7 @@ def save(trajectory: "Trajectory", path: str | Path, quantities: Sequence[str] |
     """
     if not hasattr(trajectory, "at_events") or not hasattr(trajectory, "scene"):
         raise InputError(f"save: expected a trajectory, as symrot.propagate returns it, got {show(trajectory)}")
-    path = Path(path)
+    path = path_of(path, "save")
     check_target(path, tuple(FORMATS), "save")
     arrays = labelled(trajectory, quantities)
     about = metadata(trajectory, arrays)

@@ -1,15 +1,16 @@
 """The output quantities of a trajectory with labels: names of components, meaning, unit and frame."""
 
-from collections.abc import Sequence
+from collections.abc import Iterable, Sequence
 from typing import Any, NamedTuple
 
 import numpy as np
 from numpy.typing import NDArray
 
 from symrot.errors import InputError, with_hint
+from symrot.formula.exact_numbers import show
 from symrot.scene.tables import QUANTITIES, Output
 
-__all__ = ["LOCK", "About", "Labelled", "about", "labelled"]
+__all__ = ["LOCK", "About", "Labelled", "about", "chosen_names", "labelled"]
 
 BODY, SPACE = ("1", "2", "3"), ("x", "y", "z")
 LOCK = "euler_lock"
@@ -74,6 +75,22 @@ def event_array(number: int, quantity: str) -> str:
     return f"event_{number}_{quantity}"
 
 
+def chosen_names(names: str | Sequence[str]) -> tuple[str, ...]:
+    """Return the argument ``quantities``, one name or several, as a tuple.
+
+    Raises
+    ------
+    InputError
+        If the argument is not made of texts, or has a name twice.
+    """
+    chosen = (names,) if isinstance(names, str) or not isinstance(names, Iterable) else tuple(names)
+    if not all(isinstance(name, str) for name in chosen):
+        raise InputError(f"quantities: expected a name or a list of names such as 'omega', got {show(names)}")
+    if twice := [name for place, name in enumerate(chosen) if name in chosen[:place]]:
+        raise InputError(f"quantities: expected each quantity once, got {twice[0]!r} twice")
+    return chosen
+
+
 def labelled(trajectory: Any, names: Sequence[str] | None = None) -> list[Labelled]:
     """Return the time and the quantities ``names`` of a trajectory with labels, for tables and files.
 
@@ -87,7 +104,7 @@ def labelled(trajectory: Any, names: Sequence[str] | None = None) -> list[Labell
     """
     output, derivatives = trajectory.scene.output, _derivatives(trajectory)
     quantities = [Labelled("t", trajectory.t, ("t",), "s", "", "time")]
-    chosen = output.quantities if names is None else (names,) if isinstance(names, str) else names
+    chosen = output.quantities if names is None else chosen_names(names)
     for name in chosen:
         if name in derivatives:
             quantities.append(derivatives[name])

@@ -17,7 +17,7 @@ from numpy.typing import NDArray
 
 from symrot.errors import InputError
 from symrot.files.reading import refuse_special
-from symrot.results.labels import LOCK, About, Labelled, event_array
+from symrot.results.labels import LOCK, About, Labelled, chosen_names, event_array
 from symrot.results.samples import Samples
 from symrot.results.sensitivity import Sensitivities, event_time_items, restored, time_slopes
 
@@ -126,7 +126,7 @@ class SavedTrajectory(Samples):
         """
         if quantities is None:
             return list(self._items.values())
-        names = (quantities,) if isinstance(quantities, str) else tuple(quantities)
+        names = chosen_names(quantities)
         for name in names:
             self.quantity(name)
         # with the angles of an Euler sequence comes where it is at gimbal lock

@@ -1,12 +1,12 @@
 """The folders from which a scene may read files: its own, and others that the user allows. Standard library only."""
 
-from collections.abc import Sequence
+from collections.abc import Iterable, Sequence
 from pathlib import Path
 from typing import NamedTuple
 
 from symrot.scene.reader import fail
 
-__all__ = ["Folders"]
+__all__ = ["Folders", "listed_folders"]
 
 
 class Folders(NamedTuple):
@@ -29,7 +29,7 @@ class Folders(NamedTuple):
         what : str
             The kind of file, such as ``"a CSV file"``.
         """
-        others = (self.others,) if isinstance(self.others, str | Path) else self.others
+        others = listed_folders(self.others)
         if not name.strip() or "\\" in name:
             fail(where, f"the name of {what}, with / between folders", name)
         try:
@@ -43,3 +43,11 @@ class Folders(NamedTuple):
             fail(where, "a file in the folder of the scene or below it", name, "`--table-folder DIR`, in Python "
                      "load_scene(.., table_folders=[DIR]), allows files in another folder")  # fmt: skip
         return path
+
+
+def listed_folders(value: str | Path | Sequence[str | Path]) -> tuple[str | Path, ...]:
+    """Return the argument ``table_folders``, one folder or several, as a tuple; raise InputError for other values."""
+    folders = (value,) if isinstance(value, str | Path) else tuple(value) if isinstance(value, Iterable) else (value,)
+    if not all(isinstance(folder, str | Path) for folder in folders):
+        fail("table_folders", "a folder or a list of folders", value)
+    return folders

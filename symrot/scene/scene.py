@@ -18,7 +18,7 @@ from symrot.scene.body import Body, read_body
 from symrot.scene.changes import SceneContent, changed, in_order, present_value, set_last
 from symrot.scene.content import Content, plain, toml_text
 from symrot.scene.file import SHIPPED, find_scene, read_toml, shipped_names
-from symrot.scene.folders import Folders
+from symrot.scene.folders import Folders, listed_folders
 from symrot.scene.reader import Entry, fail, read_table, table
 from symrot.scene.samples import Table, read_samples
 from symrot.scene.tables import SCHEMA, TOP, Initial, Output, Span
@@ -415,6 +415,7 @@ def _read_scene(
     where = f"{label}: "
     table(content, where, "a table with schema, body, initial, span")
     folder = Path() if path is None else Path(path).parent
+    table_folders = listed_folders(table_folders)
     folders = Folders(folder, table_folders)
     body = Entry(lambda value, place: read_body(value, place, folders), required=True)
     values = read_table(content, where, {**TOP, "body": body}, "a scene")

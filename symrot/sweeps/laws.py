@@ -7,6 +7,7 @@ or :data:`GRIDS`.
 import re
 from collections.abc import Callable, Sequence
 from dataclasses import dataclass
+from math import isfinite
 from typing import NamedTuple, NoReturn
 
 import numpy as np
@@ -19,14 +20,20 @@ __all__ = ["DISTRIBUTIONS", "GRIDS", "Distribution", "Grid", "Law", "read_law"]
 
 Floats = NDArray[np.float64]
 MOST_GRID_VALUES = 10_000_000
+MOST_DEVIATIONS = 9
+"""Drawn values of a normal distribution are within so many deviations of the mean: the probability 2^-53 is at 8.2."""
 
 
 class _Family(NamedTuple):
-    """A family of distributions: a description of its parameters, a test of their values, and its quantile function."""
+    """A family of distributions: a description of its parameters, a test of their values, and its quantile function.
+
+    ``largest`` returns a number of the size of the largest numbers that the quantile function computes.
+    """
 
     parameters: tuple[str, ...]
     condition: str
     valid: Callable[..., bool]
+    largest: Callable[..., float]
     quantile: Callable[..., Floats]
 
 
@@ -38,14 +45,25 @@ def _normal(u: Floats, mean: float, deviation: float) -> Floats:
 
 
 DISTRIBUTIONS: dict[str, _Family] = {
-    "normal": _Family(("mean", "deviation"), "deviation > 0", lambda mean, deviation: deviation > 0, _normal),
+    "normal": _Family(
+        ("mean", "deviation"),
+        "deviation > 0",
+        lambda mean, deviation: deviation > 0,
+        lambda mean, deviation: abs(mean) + MOST_DEVIATIONS * deviation,
+        _normal,
+    ),
     "uniform": _Family(
-        ("low", "high"), "low < high", lambda low, high: low < high, lambda u, low, high: low + (high - low) * u
+        ("low", "high"),
+        "low < high",
+        lambda low, high: low < high,
+        lambda low, high: high - low,
+        lambda u, low, high: low + (high - low) * u,
     ),
     "loguniform": _Family(
         ("low", "high"),
         "0 < low < high",
         lambda low, high: 0 < low < high,
+        lambda low, high: high,
         lambda u, low, high: np.exp(np.log(low) + (np.log(high) - np.log(low)) * u),
     ),
 }
@@ -154,6 +172,9 @@ def _distribution(name: str, numbers: tuple[float, ...], law: str, where: str) -
     family = DISTRIBUTIONS[name]
     if len(numbers) != len(family.parameters) or not family.valid(*numbers):
         expected = f"{name}({', '.join(family.parameters)}) with {family.condition}"
+        raise InputError(f"{where}: expected {expected}, got {show(law)}")
+    if not isfinite(family.largest(*numbers)):
+        expected = f"{name}({', '.join(family.parameters)}) with a range within that of a double"
         raise InputError(f"{where}: expected {expected}, got {show(law)}")
     return Distribution(name, numbers)
 

@@ -10,12 +10,14 @@ from numpy.typing import ArrayLike, NDArray
 
 from symrot.ensemble.reading import read_times
 from symrot.errors import InputError, with_hint
+from symrot.files.paths import path_of
 from symrot.formula.exact_numbers import show
 from symrot.planning.plan import Plan, make_plan
 from symrot.propagation.method import choose_method
 from symrot.propagation.sensitivities.libraries import rates_of
 from symrot.propagation.sensitivities.variation import structure_of
 from symrot.propagation.steppers.taylor import refusal
+from symrot.scene.folders import listed_folders
 from symrot.scene.scene import Scene, SceneSource, load_scene
 from symrot.scene.tables import read_tolerance
 from symrot.sweeps.chunk import COMPLETE, IMPOSSIBLE, STOPPED, WARNED, Chunk, Job, prepared
@@ -247,7 +249,7 @@ def sweep(
     _whole(number, "workers", MOST_WORKERS)
     if chunk is not None:
         _whole(chunk, "chunk", 10_000_000)
-    folders = [table_folders] if isinstance(table_folders, str | Path) else list(table_folders)
+    folders = list(listed_folders(table_folders))
     texts = _texts(outputs, "outputs")
     job = _job(scene, vary or {}, attitudes, sampling, count, seed, texts, t, method, tolerance, folders)
     _require_averages(chosen, job.outputs)
@@ -337,7 +339,7 @@ def _target(path: str | Path, keep: str) -> Path:
     Raise InputError for an unknown ending, a missing folder, or a Parquet file with ``keep`` = ``"statistics"``: values
     cannot be removed from it.
     """
-    target = Path(path)
+    target = path_of(path, "path")
     if target.suffix.lower() not in STORES:
         raise InputError(f"-o: expected a name that ends in {', '.join(STORES)}, got {str(path)!r}")
     if not target.parent.is_dir():

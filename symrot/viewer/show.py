@@ -10,6 +10,7 @@ import numpy as np
 
 from symrot.ensemble.ensemble import EnsembleMember
 from symrot.errors import InputError
+from symrot.files.paths import path_of
 from symrot.files.writing import check_target, write
 from symrot.propagation.propagate import propagator
 from symrot.propagation.trajectory import Trajectory
@@ -70,7 +71,7 @@ def show(
     't_handle.html'
     """
     scene, trajectory = _scene_and_motion(motion)
-    target = Path(path) if path is not None else Path(f"{scene.name}{PAGES[0]}")
+    target = path_of(path, "show") if path is not None else Path(f"{scene.name}{PAGES[0]}")
     check_target(target, (*PAGES, *film.SUFFIXES), "show")
     if target.suffix.lower() in film.SUFFIXES:
         film.require_encoder(target)

@@ -4,6 +4,7 @@ import re
 from itertools import chain
 
 import pytest
+from sympy import symbols
 
 import symrot
 from symrot.checker.context.bodies import BODIES, bodies_of_formula, body_of_words
@@ -254,6 +255,11 @@ def test_a_prime_is_a_rate_if_its_words_say_so():
     ({"where": ["T + 1 = torque"]}, "expected a name before '=', got the formula 'T . 1'"),
     ({"where": ["T = torque, I = spin"]}, "write one text for each"),
     ({"where": ["Q = torque"]}, "expected meanings only of names that occur in the claim, got 'Q'"),
+    ({"where": ["I, Q = moment of inertia"]}, "expected meanings only of names that occur in the claim, got 'Q'"),
+    ({"where": None}, "where: expected a list of texts like 'I = moment of inertia', got None"),
+    ({"where": (words for words in ["I = spin"])}, "where: expected a list of texts like"),
+    ({"assume": None}, "assume: expected a list of texts like 'a == b', since the claim is a text, got None"),
+    ({"units": ["m"]}, r"units: expected a mapping like \{'x': 'm'\} from names to units, got \['m'\]"),
     ({"where": ["I = spin", "I = torque"]}, "expected one meaning of I, got 'spin' and 'torque'"),
     ({"where": ["omega = torque"]}, "expected a quantity with the unit rad/s, which omega usually has, got 'torque'"),
     ({"where": ["T = torque"], "units": {"T": "J/s"}}, "expected a meaning of T whose unit is J/s, as stated for it"),
@@ -270,6 +276,23 @@ def test_a_prime_is_a_rate_if_its_words_say_so():
 def test_a_context_that_means_nothing_or_contradicts_is_refused(context, message):
     with pytest.raises(InputError, match=message):
         symrot.check("T = 1/2 I omega^2", **context)
+
+
+@pytest.mark.parametrize(("claim", "options"), [
+    ("I_z = m r^2/2", {"where": ["I_z, I_x = moment of inertia"], "assume": ["I_x == 2"]}),
+    ("I_z = m r^2/2", {"where": ["m, M = mass"], "assume": [r"\frac{M}{2} = m"]}),
+    ("omega_2 = omega_1_dot", {"where": ["omega_1, omega_2 = body rates"]}),
+])  # fmt: skip
+def test_a_name_beside_another_may_occur_in_a_hypothesis_or_in_a_rate(claim, options):
+    assert symrot.check(claim, **options).context
+
+
+def test_options_of_sympy_values_are_checked_too():
+    x, y = symbols("x y", real=True)
+    with pytest.raises(InputError, match=r"assume: expected a list of hypotheses, such as \[Eq\(a, b\)\], got None"):
+        symrot.check(x, y, assume=None)
+    with pytest.raises(InputError, match="units: expected the unit of x as text, got 3"):
+        symrot.check(x, y, units={"x": 3})
 
 
 def test_a_context_of_sympy_values_is_refused():

@@ -232,6 +232,28 @@ def test_a_scene_of_a_dict_names_files_in_the_current_folder(folders, monkeypatc
     assert symrot.Scene.from_dict(content, table_folders=elsewhere).table.times == (0.0, 5.0, 10.0)
 
 
+@pytest.mark.parametrize("folders", [None, 3, [3], b"."])
+def test_folders_that_are_no_paths_are_refused(folders):
+    for read in (symrot.load_scene, lambda name, **options: symrot.sweep(name, outputs="omega@end", **options)):
+        with pytest.raises(InputError, match=r"^table_folders: expected a folder or a list of folders, got "):
+            read("t_handle", table_folders=folders)
+    with pytest.raises(InputError, match=r"^table_folders: expected a folder or a list of folders, got "):
+        symrot.Scene.from_dict(symrot.load_scene("t_handle").to_dict(), table_folders=folders)
+
+
+@pytest.mark.parametrize("path", [3, b"a.npz"])
+def test_a_path_that_is_no_text_is_refused(path):
+    trajectory = symrot.propagate("t_handle", t=[0, 1])
+    uses = [
+        lambda: symrot.save(trajectory, path), lambda: symrot.show(trajectory, path), lambda: symrot.check_file(path),
+        lambda: symrot.mesh(path, mass=1), lambda: symrot.links(path),
+        lambda: symrot.sweep("t_handle", {"omega_1": "values(1)"}, outputs="omega@end", path=path),
+    ]  # fmt: skip
+    for use in uses:
+        with pytest.raises(InputError, match="expected the path of a file, as a text or Path, got"):
+            use()
+
+
 def test_a_byte_of_a_file_that_is_no_table_is_not_quoted(folders, capsys):
     here, _ = folders
     (here / "moments.csv").write_bytes(b"\xe9secret")

@@ -22,11 +22,13 @@ WRONG = {
 
 @pytest.mark.parametrize("kind", WRONG)
 def test_times_that_are_no_real_numbers_are_refused(kind):
-    """A propagator and an ensemble refuse them with one sentence that says what to write instead."""
+    """A propagator, an ensemble and the function ``sol`` refuse them with one sentence that says what to write instead."""
     with pytest.raises(InputError, match=r"^t: expected an array of times in s, got an array of type \S+; write "):
         symrot.propagator("tumbling_prism")(WRONG[kind])
     with pytest.raises(InputError, match=r"^t: expected times in s, got an array of type \S+; write "):
         symrot.propagate_ensemble("tumbling_prism", omega=[[0, 0.01, 1.0]], t=WRONG[kind])
+    with pytest.raises(InputError, match=r"^t: expected times in s, got an array of type \S+; write "):
+        symrot.propagate("tumbling_prism", t=[0, 1]).sol(WRONG[kind])
 
 
 @pytest.mark.parametrize("kind", WRONG)

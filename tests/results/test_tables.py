@@ -121,6 +121,21 @@ def test_unknown_quantities_are_refused_in_a_sentence(trajectory):
         trajectory._labelled(["enrgy"])
 
 
+@pytest.mark.parametrize(("quantities", "message"), [
+    (3, "expected a name or a list of names such as 'omega', got 3"),
+    ([["omega"]], r"expected a name or a list of names such as 'omega', got \[\['omega'\]\]"),
+    (["omega", "omega"], "expected each quantity once, got 'omega' twice"),
+])  # fmt: skip
+def test_names_of_quantities_are_texts_and_occur_once(trajectory, tmp_path, quantities, message):
+    path = tmp_path / "motion.npz"
+    trajectory.save(path)
+    for make in (trajectory.to_dataframe, trajectory.to_xarray, symrot.load(path)._labelled):
+        with pytest.raises(InputError, match=f"^quantities: {message}$"):
+            make(quantities)
+    with pytest.raises(InputError, match=f"^quantities: {message}$"):
+        symrot.save(trajectory, path, quantities)
+
+
 def test_a_missing_package_is_named_with_its_extra():
     code = (
         "import sys; sys.modules['pandas'] = sys.modules['xarray'] = None\n"

@@ -51,6 +51,8 @@ def test_grids_list_their_values(law, values):
         ("geomspace(-1, 1, 3)", "of the same sign"),
         ("geomspace(0, 1, 3)", "of the same sign"),
         ("linspace(-1e308, 1e308, 3)", "a range within that of a double"),
+        ("uniform(-1e308, 1e308)", "x: expected uniform(low, high) with a range within that of a double"),
+        ("normal(0, 1e308)", "x: expected normal(mean, deviation) with a range within that of a double"),
         ("values()", "a number"),
         ("normal(0, x)", "x: expected a number, got ' x'"),
         ([], "x: expected 1 to"),

@@ -7,6 +7,7 @@ import re
 from collections.abc import Iterable, Iterator, Mapping
 from dataclasses import dataclass
 from fractions import Fraction
+from functools import cached_property
 
 from symrot.checker.claim.tree import Node, is_derivative, is_name, nodes_of
 from symrot.checker.context.bodies import Body, with_article
@@ -21,6 +22,9 @@ _OF_AXES = re.compile(
 )
 """Pattern of the words that say where an axis is, such as "about" and "diameter"."""
 
+_OF_RATE = re.compile(r"^d+(?=.)|_?d+ot$|(_prime)+$")
+"""Pattern of what a name of a rate has besides the name of its quantity, as dphi, phi_dot and phi_prime have."""
+
 
 def matrix_of(name: str) -> str:
     """Return the matrix of which ``name`` is an entry: A for A_12, J_c for J_c_xy; return any other name unchanged."""
@@ -33,8 +37,8 @@ class Meaning:
 
     Attributes
     ----------
-    names : tuple of str
-        The names as they are spelled in trees, with all readings of an ambiguous name; a rate has ``d`` in front.
+    spellings : tuple of tuple of str
+        For each name, how it is spelled in trees: all readings of an ambiguous name; a rate has ``d`` in front.
     quantity : Quantity
     place : str
         The title of a place, such as "about an end", or an empty text.
@@ -48,7 +52,7 @@ class Meaning:
         The words that symrot does not use.
     """
 
-    names: tuple[str, ...]
+    spellings: tuple[tuple[str, ...], ...]
     quantity: Quantity
     place: str = ""
     body: Body | None = None
@@ -56,13 +60,26 @@ class Meaning:
     written: tuple[str, ...] = ()
     rest: str = ""
 
+    @cached_property
+    def names(self) -> tuple[str, ...]:
+        """The names as they are spelled in trees."""
+        return tuple(dict.fromkeys(name for spelling in self.spellings for name in spelling))
+
     def is_of(self, name: str) -> bool:
         """Return whether this is the meaning of ``name``, or of a vector or matrix with the entry ``name``, as L for
         L_x.
         """
+        return self._is_spelled(name, self.names)
+
+    def absent(self, names: set[str]) -> list[str]:
+        """Return those names, as they were typed, that neither are among ``names`` nor have an entry there."""
+        pairs = zip(self.written, self.spellings, strict=True)
+        return [written for written, spelling in pairs if not any(self._is_spelled(name, spelling) for name in names)]
+
+    def _is_spelled(self, name: str, spelling: tuple[str, ...]) -> bool:
         # a quaternion beta has the entry beta_0, a matrix A the entry A_12
         stem = re.sub(r"_?[0-4]$" if self.quantity.title == "quaternion" else r"_?[xyz1-3]$", "", name)
-        return name in self.names or stem in self.names or f"{stem}_i" in self.names or matrix_of(name) in self.names
+        return not {name, stem, f"{stem}_i", matrix_of(name)}.isdisjoint(spelling)
 
 
 @dataclass(frozen=True)
@@ -121,17 +138,30 @@ class Context:
             own += [meaning.place] if self.body and not _has_line(self.body, meaning.place) else []
         return " ".join(words for words in own if words)
 
-    def fits(self, names: set[str]) -> bool:
-        """Return whether each meaning in the context is that of at least one of ``names``, the names in a text."""
-        return all(any(meaning.is_of(name) for name in names) for meaning in self.meanings)
+    def fits(self, names: set[str], elsewhere: set[str]) -> bool:
+        """Return whether all names to which the context gives a meaning occur; the arguments are those of
+        :meth:`check_names`.
+        """
+        return not self._absent(names, elsewhere)
 
-    def check_names(self, names: set[str]) -> None:
-        """Raise InputError if a meaning in the context is the meaning of none of ``names``, the names of the claim."""
-        for meaning in self.meanings:
-            if not any(meaning.is_of(name) for name in names):
-                raise InputError(
-                    f"where: expected meanings only of names that occur in the claim, got {meaning.written[0]!r}"
-                )
+    def check_names(self, names: set[str], elsewhere: set[str]) -> None:
+        """Raise InputError if a name to which the context gives a meaning does not occur.
+
+        Of the names of one meaning, at least one must be among ``names``, the names of the claim. The others may also
+        be letters of a body, or among ``elsewhere``, the names in hypotheses and definitions; a rate x_dot names x too.
+        """
+        for name in self._absent(names, elsewhere):
+            raise InputError(f"where: expected meanings only of names that occur in the claim, got {name!r}")
+
+    def _absent(self, names: set[str], elsewhere: set[str]) -> list[str]:
+        bodies = [self.body, *(meaning.body for meaning in self.meanings)]
+        known = names.union(elsewhere, *(body.letters.values() for body in bodies if body))
+        known |= {_OF_RATE.sub("", name) for name in known}
+        return [
+            name
+            for meaning in self.meanings
+            for name in meaning.absent(known if any(map(meaning.is_of, names)) else names)
+        ]
 
     def units(self, names: Iterable[str], explicit: Mapping[str, str]) -> dict[str, str]:
         """Return the units of those ``names`` whose meaning has one: {"I": "kg m^2"}.

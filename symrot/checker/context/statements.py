@@ -4,7 +4,7 @@ Words that name nothing known, and words that contradict each other, are refused
 """
 
 import re
-from collections.abc import Iterator, Sequence
+from collections.abc import Collection, Iterator, Sequence
 from dataclasses import replace
 from difflib import get_close_matches
 
@@ -76,7 +76,7 @@ def read_context(
     for key, value in (("body", body), ("frame", frame), ("sequence", sequence)):
         if not isinstance(value, str):
             raise InputError(f"{prefix}{key}: expected a text, got {value!r}")
-    if isinstance(where, str) or not all(isinstance(text, str) for text in where):
+    if isinstance(where, str) or not isinstance(where, Collection) or not all(isinstance(text, str) for text in where):
         raise InputError(f"{prefix}where: expected a list of texts like 'I = moment of inertia', got {where!r}")
     meanings = tuple(_meaning(text, f"{prefix}where: ") for text in where)
     context = Context(
@@ -110,8 +110,8 @@ def _meaning(text: str, prefix: str) -> Meaning:
     if body is not None:
         place, rest = place or body.place, body.rest
     is_rate = quantity.unit in RATES
-    names = tuple(dict.fromkeys(name for part in written for name in _readings_of_name(part, prefix, is_rate)))
-    return Meaning(names, quantity, place, body, frame, written, meaningful_words(rest))
+    spellings = tuple(tuple(_readings_of_name(part, prefix, is_rate)) for part in written)
+    return Meaning(spellings, quantity, place, body, frame, written, meaningful_words(rest))
 
 
 def _original(rest: str, words: str) -> str:

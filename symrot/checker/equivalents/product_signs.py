@@ -38,7 +38,7 @@ def sign_by_integral(name: Node, formula: Node) -> str:
 def with_sign(context: Context, name: Node, sign: str) -> Context:
     """Return the context with the statement that ``name`` is a product of inertia with the sign "minus" or "plus"."""
     quantity = WITH_MINUS if sign == "minus" else WITHOUT_MINUS
-    meaning = Meaning((str(name.value),), quantity, written=(str(name.value),))
+    meaning = Meaning(((str(name.value),),), quantity, written=(str(name.value),))
     return replace(context, meanings=(*context.meanings, meaning))
 
 

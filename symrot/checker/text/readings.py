@@ -9,7 +9,7 @@ from dataclasses import replace
 from symrot.checker.claim.notation import Notation, TypedNotation, notation_of
 from symrot.checker.claim.reader import readings_of
 from symrot.checker.claim.source.lines import claims_of_reading
-from symrot.checker.claim.source.text import functions_of_time
+from symrot.checker.claim.source.text import functions_of_time, names_in_hypotheses
 from symrot.checker.claim_verdict import is_unfinished
 from symrot.checker.context.context import NO_CONTEXT, Context, quantities_of
 from symrot.checker.inequality import OPPOSITE, is_inequality, verdict_on_inequality
@@ -55,14 +55,15 @@ def verdict_on_text(
     InputError
         For text that cannot be read, with the place, and for a text of which no reading has a meaning.
     """
+    elsewhere = names_in_hypotheses(assume) if stated.meanings else set()
     if (measured := measured_text(source)) is not None:
         verdict = verdict_on_measured(measured, source, assume, units, repair)
         if not stated:
             return verdict
-        stated.check_names(names_of(readings_of(measured.text)[0]))
+        stated.check_names(names_of(readings_of(measured.text)[0]), elsewhere)
         return replace(verdict, context=stated.echo, notes=(*verdict.notes, UNUSED_CONTEXT))
     readings = readings_of(source, declared=Declared(functions=functions_of_time(assume)))
-    fitting = [reading for reading in readings if stated.fits(names_of(reading))] or readings[:1]
+    fitting = [reading for reading in readings if stated.fits(names_of(reading), elsewhere)] or readings[:1]
     return verdict_on_readings(fitting, notation_of, source, assume, units, repair, stated)
 
 

@@ -78,6 +78,9 @@ def dimensions_of_formulas(left: Any, right: Any, units: Mapping[str, str] | Non
     """
     symbols = {symbol for side in (left, right) for symbol in getattr(side, "free_symbols", ())}
     own = {symbol.name: UNIT[symbol] for symbol in symbols if UNIT.get(symbol)} | dict(units or {})
+    for name, unit in own.items():
+        if not isinstance(unit, str):
+            raise InputError(f"units: expected the unit of {name} as text, got {unit!r}")
     try:
         sides = read_expression(as_text(left)), read_expression(as_text(right))
     except InputError:

@@ -17,6 +17,7 @@ from symrot.propagation.array_functions import ARRAY_FUNCTIONS
 from symrot.propagation.events.polynomials import Piece
 from symrot.propagation.method import Choice
 from symrot.propagation.motions.setup import Setup
+from symrot.propagation.real_array import real_array
 from symrot.propagation.steppers.integration_stopped import IntegrationStopped
 from symrot.propagation.steppers.recording import Recording
 from symrot.propagation.steppers.stats import Stats, rounding_warning
@@ -166,7 +167,7 @@ class Motion(ABC):
         names += [f"q{i} of t" for i in range(4)] if with_attitude else []
 
         def at(t: ArrayLike) -> Floats:
-            instants = np.asarray(t, dtype=float)
+            instants = real_array(t, "t", "times in s")
             flat = np.atleast_1d(instants).ravel()
             values = self.evaluate(flat, path(flat), names).T
             # shape (3,) or (7,) for a single time

@@ -17,6 +17,7 @@ from symrot.checker.context.statements import read_context
 from symrot.checker.latex.reader import Names, read_latex
 from symrot.checker.typed.readings import Declared, Relation
 from symrot.errors import InputError
+from symrot.files.paths import path_of
 
 __all__ = ["Refusal", "read_claims", "read_entries"]
 
@@ -74,7 +75,7 @@ def read_entries(path: str | Path) -> list[Claim | Refusal]:
     from symrot.scene.file import read_toml
 
     label = str(path)
-    table = read_toml(Path(path), label, "claim")
+    table = read_toml(path_of(path, "claims"), label, "claim")
     if table.get("schema") != 1:
         raise InputError(f"{label}: expected schema = 1, got {table.get('schema')!r}")
     unknown = next((key for key in table if key not in FILE_KEYS), None)
@@ -165,8 +166,12 @@ def _claim(entry: dict[str, Any], number: int, label: str) -> Claim:
         else:
             readings.append((_equation(source, f"{place}: {at}", own), source))
     (relation, sources["claim"]), *rest = readings
+    others = [*(side for hypothesis in hypotheses for side in hypothesis[1:]), *(tree for _, tree in define)]
+    own_names, elsewhere = (
+        {name for side in sides for name in quantities_of(side)} for sides in (relation[1:], others)
+    )
     try:
-        context.check_names({name for side in relation[1:] for name in quantities_of(side)})
+        context.check_names(own_names, elsewhere)
     except InputError as reason:
         raise InputError(f"{place}: {reason}") from None
     return claim.with_relation(relation, alternatives=tuple(other for other, _ in rest))

@@ -7,7 +7,7 @@ from symrot.checker.arrays.complex_parts import BAR, imaginary_unit, open_number
 from symrot.checker.claim.claims import Claim
 from symrot.checker.claim.reader import readings_of
 from symrot.checker.claim.source.impulses import with_rates
-from symrot.checker.claim.source.text import check_units, claim_of_relation, is_latex
+from symrot.checker.claim.source.text import check_units, claim_of_relation, is_latex, names_in_hypotheses
 from symrot.checker.claim.tree import TIME, Node, is_derivative, names_in, nodes_of
 from symrot.checker.claim.vectors import used_vectors
 from symrot.checker.context.context import NO_CONTEXT, Context, quantities_of
@@ -40,7 +40,8 @@ def claims_of_reading(
     names = {str(n.value) for chain in reading.lines for n in nodes_of(*chain.sides)}
     check_units(dict(units or {}), names, "claim")
     units = {**stated.units(names - {*reading.vectors}, units or {}), **(units or {})}
-    stated.check_names({name for chain in reading.lines for side in chain.sides for name in quantities_of(side)})
+    quantities = {name for chain in reading.lines for side in chain.sides for name in quantities_of(side)}
+    stated.check_names(quantities, names_in_hypotheses(assume) if stated.meanings else set())
     context = [side for chain in reading.lines for side in chain.sides]
     numbers = _complex_numbers(reading.lines, context)
     if numbers and all(unit.kind == "name" for unit in numbers.values()):

@@ -41,13 +41,15 @@ from symrot.checker.claim.shapes import (
 from symrot.checker.claim.tree import TIME, Node, names_in, negated, nodes_of
 from symrot.checker.claim.tree import number as number_node
 from symrot.checker.claim.vectors import Vector, gyroscopic_tensors, is_tensor, with_scalar_products
+from symrot.checker.context.context import quantities_of
 from symrot.checker.latex.reader import Names, read_latex
 from symrot.checker.typed.readings import Declared, Relation
 from symrot.checker.units.units import read_unit
 from symrot.errors import InputError, complaint
 
 __all__ = [
-    "ON_PAULI", "check_units", "claim_of_relation", "claim_of_text", "functions_of_time", "is_latex", "read_hypothesis",
+    "ON_PAULI", "check_units", "claim_of_relation", "claim_of_text", "functions_of_time", "is_latex",
+    "names_in_hypotheses", "read_hypothesis",
 ]  # fmt: skip
 
 ON_PAULI = "sigma_x, sigma_y and sigma_z are Pauli's matrices, and i is the imaginary unit"
@@ -381,9 +383,13 @@ def is_latex(source: str) -> bool:
     return any(mark in source for mark in "\\${")
 
 
-def functions_of_time(assume: Sequence[str]) -> set[str]:
-    """Return the names that hypotheses write as ``f(t)`` or with a time derivative."""
-    sides = [
+def names_in_hypotheses(assume: Sequence[str]) -> set[str]:
+    """Return the names of quantities in hypotheses; the rate of phi has the name dphi."""
+    return {name for side in _sides_of_hypotheses(assume) for name in quantities_of(side)}
+
+
+def _sides_of_hypotheses(assume: Sequence[str]) -> list[Node]:
+    return [
         side
         for source in assume
         for side in (
@@ -392,9 +398,13 @@ def functions_of_time(assume: Sequence[str]) -> set[str]:
             else [side for chain in readings_of(source, "given")[0].lines for side in chain.sides]
         )
     ]
+
+
+def functions_of_time(assume: Sequence[str]) -> set[str]:
+    """Return the names that hypotheses write as ``f(t)`` or with a time derivative."""
     return {
         str(node.value)
-        for node in nodes_of(*sides)
+        for node in nodes_of(*_sides_of_hypotheses(assume))
         if node.kind == "call" and node.value not in BUILT_IN and [part.value for part in node.args] == ["t"]
     }
 

@@ -63,5 +63,6 @@ COST = {
 }  # fmt: skip
 """Code of a fault such as ``sign_of_term`` -> the cost of an edit that corrects it; cheaper edits are tried first.
 
-The other keys name special kinds of edits: their values are costs, or are added to or multiplied by other costs.
+Keys that are not in FAULT_DESCRIPTIONS name special kinds of edits. Some of their values are costs; others are added to
+a cost or multiply one, as the comments say.
 """
