@@ -47,9 +47,10 @@ def signed_parts(box: Box) -> Iterator[Part]:
 
 
 def shells(part: Part) -> Iterator[tuple[float, Part]]:
-    """Split a part of the box of omega by the power of two that scales omega there: yield pairs (power, sub-part).
+    """Split ranges of the components of omega by the power of two that scales omega in the C code.
 
-    The C text divides omega by a power of two near its largest component, so the power may change within a part.
+    The C code divides omega by a power of two near its largest component. Yield pairs (power of two, smaller ranges of
+    omega): within the smaller ranges the power is the same.
     InputError is raised for a part in which the largest component reaches 0, or varies by a factor above about 2^8.
     """
     smallest = max(min(abs(low), abs(high)) for low, high in part)
@@ -69,7 +70,7 @@ def shells(part: Part) -> Iterator[tuple[float, Part]]:
 
 
 def _power(exponent: int) -> float:
-    """Return the power of two by which the C text divides omega: ``2**exponent``, within the range of the C text.
+    """Return the power of two by which the C code divides omega: ``2**exponent``, but at least 2^-1000, at most 2^1000.
 
     ``exponent`` is that of the largest component of omega, as :func:`math.frexp` returns it.
     """

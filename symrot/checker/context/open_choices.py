@@ -41,7 +41,9 @@ def with_order(context: Context, verdict: Verdict, letters: Sequence[str]) -> Ve
 
 
 def with_sides(verdict: Verdict) -> Verdict:
-    """Return the verdict, or "recognised" instead of "true" if the axes along the sides of a body were guessed."""
+    """Return the verdict, or "recognised" if it was guessed which side (a, b, c) of a box or other body is along which
+    axis.
+    """
     readings = [known for known in verdict.recognised_as if not any(re.fullmatch(SIDES, old) for old in known.mapping)]
     # known formulas call the sides, or semi-axes, along x, y and z a, b and c: without renaming, nothing is guessed
     if readings:

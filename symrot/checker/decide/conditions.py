@@ -1,7 +1,7 @@
 """Conditions under which a false claim becomes true, such as a unit norm, equal moments, or the sign of a root.
 
-A condition is a common factor of all residuals (left minus right side of each entry): where it is zero, the claim is
-true. Only conditions that textbooks state count, since every residual vanishes somewhere.
+A condition comes from a common factor of all residuals (left minus right side of each entry): where the factor is zero,
+the claim is true. Every residual vanishes somewhere; so only conditions of the kinds that textbooks state are returned.
 """
 
 import re
@@ -45,7 +45,7 @@ def requirements(
     ----------
     ring : FormulaRing
     numerators : sequence of PolyElement
-        The numerators, in lowest terms, of left - right for those entries of the claim where that is not zero.
+        The numerator, in lowest terms, of each nonzero difference of the left and right entries of the claim.
     sides : sequence of (Expr, Expr)
         The left and the right side of the entry to which each numerator belongs.
     entries : int

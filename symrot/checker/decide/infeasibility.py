@@ -32,13 +32,14 @@ MOST_PRODUCTS = 150_000
 
 
 class _Undecided(Exception):
-    """Exception raised if a case is not proven impossible."""
+    """Raised by :class:`_Prover` if it finds no proof that given polynomials have no common real zero."""
 
 
 @dataclass(frozen=True)
 class Infeasibility:
-    """The reason why no point obeys the constraints, and the polynomial that cannot vanish, if it is a single one, else
-    None.
+    """The reason why no point obeys a set of constraints.
+
+    If the reason is one polynomial that would have to be zero but never is, it is ``polynomial``, otherwise None.
     """
 
     reason: str
@@ -189,8 +190,9 @@ class _Prover:
         return roots == int(at_zero)
 
     def squares(self, poly: PolyElement) -> list[tuple[Any, PolyElement]]:
-        """Return [(1, x), (2, y)] for ``x^2 + 2*y^2`` or its negative: pairs (d, l) with d > 0 and l linear or 1; [] if
-        impossible.
+        """Return pairs (d, l) such that a polynomial of degree 2, or its negative, is the sum of all ``d*l^2``.
+
+        d is positive, and l is linear or 1. Example: [(1, x), (2, y)] for ``x^2 + 2*y^2``; [] if there is no such sum.
         """
         if max(map(sum, poly)) != 2:
             return []
@@ -201,7 +203,7 @@ class _Prover:
         return []
 
     def _completed(self, rest: PolyElement) -> list[tuple[Any, PolyElement]]:
-        """Return [(1, x), (2, y)] for ``x^2 + 2*y^2``: pairs (d, l) with d > 0 and l linear or 1; [] if impossible."""
+        """Return pairs (d, l), as :meth:`squares` does, for a polynomial but not for its negative."""
         squares = []
         for place in sorted(occurring([rest])):
             x = self.ring.gens[place]
@@ -223,7 +225,10 @@ class _Prover:
     # -- ranges -------------------------------------------------------------------------------------------------------
 
     def out_of_range(self, poly: PolyElement, zeros: Sequence[PolyElement]) -> bool:
-        """Return whether bounds of the unknowns keep a polynomial from zero: x - 2 if x^2 + y^2 = 1."""
+        """Return whether bounds of the unknowns, which follow from ``zeros``, show that a polynomial is never zero.
+
+        Example: if x^2 + y^2 - 1 is zero, then -1 <= x <= 1, and x - 2 is never zero.
+        """
         bounds = self.bounds(zeros)
         low, high = reduce(sum_of_ranges, (_term_range(mono, c, bounds) for mono, c in poly.items()))
         return bool(low > 0 or high < 0)

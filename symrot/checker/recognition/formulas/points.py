@@ -39,7 +39,7 @@ GENERAL = (
 )
 """Names of the formulas that are one symbol, or a vector of three symbols.
 
-Every letter equals such a formula; so a claim means it only with the letters that books use for it.
+Any claim whose formula is one letter would match; so it is recognised only with the letters that books use.
 """
 
 
