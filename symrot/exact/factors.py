@@ -47,7 +47,10 @@ def factor_list(poly: PolyElement) -> tuple[Any, list[tuple[PolyElement, int]]]:
 
 
 def _split(poly: PolyElement) -> list[tuple[PolyElement, int]]:
-    """Return pairs (factor, power) of a primitive polynomial that is linear in an unknown; any other is left whole."""
+    """Return the factors of a primitive polynomial that has degree 1 in some unknown, as pairs (factor, power).
+
+    A polynomial without such an unknown is returned whole, as its own single factor.
+    """
     linear = [place for place, degree in enumerate(poly.degrees()) if degree == 1]
     if not linear:
         return [(poly, 1)]

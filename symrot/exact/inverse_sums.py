@@ -238,7 +238,10 @@ def _principal_direction(ring: FormulaRing, leaf: Expr, angle: Expr) -> Principa
 
 
 def _principal_direction_of_root(ring: FormulaRing, leaf: Expr, angle: Expr) -> PrincipalValueProof | None:
-    """Return a proof that ``leaf``, an ``atan2(y, x)``, equals ``angle`` under conditions; None without one."""
+    """Return a proof, with its conditions, that ``leaf``, an ``atan2(y, x)``, equals ``angle``.
+
+    Return None if no proof is found.
+    """
     y, x = leaf.args
     # y or x must be a root or an absolute value.
     # y = sqrt(P): if P = r^2 sin(w)^2 for r = x/cos(w), the value is w for w in [0, pi] and positive r; for x = sqrt(P)

@@ -39,7 +39,7 @@ def places_within(begin: float, times: Floats) -> Floats:
 def rests_at_corner(
     rates: Program, depends: Sequence[Sequence[str]], p: Sequence[float], times: Floats, samples: Floats
 ) -> bool:
-    """Return whether a motion stays where its rates have no derivatives by states or parameters.
+    """Return whether a motion stays where its rates are not differentiable by the states or parameters.
 
     The rates are examined at n arbitrary times. A motion that only passes a point without derivatives is there at a
     single time, which the arbitrary times miss.
@@ -88,9 +88,10 @@ class _Number:
         self.value, self.slopes, self.positive, self.timed = value, slopes, positive, timed
 
     def _zero(self, other: "_Number") -> bool:
-        """Return whether this number, times any derivative of ``other``, is zero, even if ``other`` has no derivative.
+        """Return whether a product rule's term, this number times a derivative of ``other``, is zero.
 
-        At omega = 0, for instance, ``omega_1*|omega|`` has the derivative 0, though ``|omega|`` has none.
+        The term may be zero even if the derivative does not exist: at omega = 0, ``omega_1*|omega|`` has the derivative
+        0, though ``|omega|`` has none.
         """
         if EDGE in other.slopes.values():
             return False

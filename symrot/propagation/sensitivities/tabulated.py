@@ -183,7 +183,10 @@ class TableEquations:
         )
 
     def _numbers(self, k: int) -> tuple[dict[str, float], Rows]:
-        """Return two dicts: the values of the parameters in interval k of the table, and their derivatives, by name."""
+        """Return two dicts for interval k of the table: parameter -> value, and parameter -> its m derivatives.
+
+        The derivatives are by the variables; parameters that depend on no variable are missing in the second dict.
+        """
         if k not in self._bound:
             if len(self._bound) >= MOST_BOUND:
                 self._bound.clear()
@@ -194,7 +197,7 @@ class TableEquations:
         return self._bound[k]
 
     def event_slopes(self, scene: Scene, result: EventResult, tolerance: float) -> tuple[Floats, ...]:
-        """Return one array for each event: derivatives of its k times by the m variables, shape (k, m).
+        """Return for each event the derivatives of the k times of this event by the m variables, shape (k, m).
 
         ``tolerance``, the error of the motion of ``result``, matters only for torques that switch.
         """
@@ -279,10 +282,11 @@ def _sample_of(scene: Scene, variable: Variable) -> tuple[int, int] | None:
 
 
 def _replaced(variable: Variable, sample: tuple[int, int] | None) -> Variable:
-    """Return ``variable`` as a variable of the scene in which formulas replace the table of samples.
+    """Return ``variable`` adapted to the scene in which formulas replace the table of samples.
 
-    A sample of the table (``sample`` is not None) does not occur in that scene, so that a change of the returned
-    variable does not change the scene. How a sample changes the coefficients of the formulas is computed elsewhere.
+    Its function ``moved``, which returns the scene after a change of the variable, then returns a scene with formulas.
+    If the variable is a sample of the table (``sample`` is not None), ``moved`` ignores the change: how a sample
+    changes the coefficients of the formulas is computed elsewhere.
     """
     moved = variable.moved
     if moved is None:

@@ -286,7 +286,7 @@ class _Differences:
         raise InputError(f"sensitivities: expected a scene that stays valid if {name} changes, got {refusal}")
 
     def at(self, place: int) -> Numbers:
-        """Return the numbers, by name, after a change of the variable by ``place`` steps from its present value."""
+        """Return a map from names to numbers for the variable's present value plus ``place`` steps."""
         if place not in self._points:
             self._points[place] = self._values(place * self._step)
         return self._points[place]

@@ -413,7 +413,10 @@ class Integration:
         return pieces
 
     def runs(self, end: float) -> Generator[Run, None, None]:
-        """Yield the run once per segment between switching times, for the caller to :meth:`advance` to its end."""
+        """Yield the same run, the state of the C code, once for each segment between switching times.
+
+        The caller must :meth:`advance` the run to the end of the segment before asking for the next one.
+        """
         stepper, self.goal = self.stepper, end
         pace = (self.way or abs(end - self.t0)) * self.pace
         fields = self.fields if self.rounding is None else {**self.fields, **self.rounding.fields()}

@@ -81,7 +81,10 @@ class SwitchedSystem:
         return {twin: (mode, sign) for mode in held for twin, sign in self.twins[mode] if twin != mode}
 
     def matters_at_zero(self, mode: str) -> bool:
-        """Return whether a motion in which the argument x of sign(x) stays zero needs sign(0)."""
+        """Return whether the value of sign(0) affects a motion in which the argument x of sign(x) stays zero.
+
+        ``mode`` is the name of the number that replaces the function sign(x) in formulas.
+        """
         if next(switch for switch in self.switches if switch.mode == mode).at_zero != 0:
             # functions with the value of one side at zero, such as abs and step, never need it
             return False
@@ -159,7 +162,8 @@ class SwitchedSystem:
     def regime(self, held: frozenset[str], modes: Modes) -> Regime:
         """Return the smooth motion in which the arguments of the switching functions ``held`` stay at zero.
 
-        Raise InputError if the argument of another function contains one of them: it then has no value.
+        Raise InputError if one of these functions, or one that switches together with it, occurs inside the argument of
+        another function: this argument then has no value.
         """
         # the values of the other functions only choose branches of where(condition, u, v)
         key = held, tuple(modes.values()) if self._chooses else ()
@@ -235,7 +239,10 @@ def is_continuous(switch: Switch) -> bool:
 
 
 def _bends(switch: Switch | TorqueSwitch) -> bool:
-    """Return whether a function, not floor, only has a kink where it switches, as abs has, and no jump, as sign has."""
+    """Return whether a function has only a kink where it switches, as abs, and no jump, as sign.
+
+    The result is not valid for floor.
+    """
     # at the switch, both values of its mode, 1 and -1, then give the right result; floor would give True here
     return switch.at_zero == 1
 
@@ -245,9 +252,10 @@ def _chosen(
 ) -> TorqueStructure:
     """Return a torque in which the branch that applies replaces each ``where(condition, u, v)``.
 
-    ``modes`` has the values of the switching functions (sign, abs, ..). The functions ``held`` become unknowns of the
-    equations; functions with jumps in ``tied`` become the same unknowns or their negatives
-    (:meth:`SwitchedSystem.tied`). A torque without formulas is returned unchanged.
+    ``modes`` has the values of the switching functions (sign, abs, ..). The functions ``held``, whose arguments stay at
+    zero, become unknowns of the equations. ``tied`` maps the functions that switch together with a held one to pairs
+    (held function, 1 or -1): those with jumps become the unknown of the held function or its negative. A torque without
+    formulas is returned unchanged.
     """
     if not isinstance(torque, FormulaTorque):
         # no formulas
