@@ -230,7 +230,7 @@ class _Jet:
     def coefficient(self, i: int, n: str, stage: str, sums: str) -> list[str]:
         """Return the C statements that set the variable ``v{i}`` to coefficient ``n`` (C text) of series ``i``.
 
-        ``stage`` and ``sums`` are as for :meth:`slot`.
+        ``stage`` is "first" for n = 0, "second" for n = 1, else "later"; ``sums`` is "a" for even n, "b" for odd n.
         """
         s, name = self.series[i], f"v{i}"
         if s.rule == "sum":

@@ -87,7 +87,7 @@ def lay_out(system: Recurrences, edges: Sequence[int]) -> Layout:
 
 
 def cost(layout: Layout) -> int:
-    """Return an estimate of the time that one coefficient of all series takes: the number of columns plus that of rows.
+    """Return an estimate of the time that one coefficient of all series takes: number of columns plus number of rows.
 
     A column is a vector of four convolutions, a row a vector of up to four series.
     """

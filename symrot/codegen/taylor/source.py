@@ -180,8 +180,9 @@ class _Jet:
     def sum(self, row: Row, stage: str, sums: str, factor: str = "", fused: str = "V_FMA") -> str:
         """Return the C expression for coefficient n of the sums in ``row``: one sum of series and products per lane.
 
-        The expression is multiplied by ``factor`` (C text; empty for 1). ``fused`` is the C function that computes
-        a b + c; ``stage`` and ``sums`` are as for :meth:`column`.
+        The expression is multiplied by ``factor`` (C text; empty for 1). ``stage`` is "first" for n = 0, "second" for
+        n = 1, else "later"; ``sums`` is "a" for even n, "b" for odd n. ``fused`` is the C function that computes
+        a b + c.
         """
         # terms that are computed last are added last, so that others need not wait
         value = ""
@@ -270,7 +271,7 @@ class _Jet:
     def _quotient(self, row: Row, name: str, stage: str, terms: list[str], total: str) -> list[str]:
         """Return the C statements that set the variable ``name`` to coefficient n of w = u/v: ``(u[n] - total)/v[0]``.
 
-        ``terms`` are the C texts of v[n] and u[n], ``total`` is that of ``sum(v[k] w[n-k], k = 1..n)``.
+        ``terms`` are the C texts of v[n] and u[n], ``total`` is the C text of ``sum(v[k] w[n-k], k = 1..n)``.
         """
         # u[n] is missing if u is constant
         divisor, upper = f"d{name[1:]}", "V_ALL(0.0)"
