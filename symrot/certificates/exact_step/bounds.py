@@ -184,10 +184,10 @@ class _Context:
     # --- runs ---------------------------------------------------------------------------------------------------------
 
     def prepare(self, moments: list[float], omega: list[Bounded]) -> None:
-        """Compute the constants of the motions that start in a part of the box, and store them in ``self.motion``.
+        """Compute the constants of all motions with initial rates in given ranges, and store them in ``self.motion``.
 
-        ``omega`` has the ranges of the three initial rates in this part; the initial quaternion is any unit quaternion.
-        InputError is raised if the C text rejects the states, UndecidedError if the part must be divided.
+        ``omega`` has the ranges of the three initial rates; the initial quaternion is any unit quaternion. InputError
+        is raised if the C code rejects the states, UndecidedError if the ranges must be divided into smaller ones.
         """
         motion = [self.machine.blank("free_body")]
         zero = point(0.0)

@@ -51,7 +51,8 @@ def shells(part: Part) -> Iterator[tuple[float, Part]]:
 
     The C code divides omega by a power of two near its largest component. Yield pairs (power of two, smaller ranges of
     omega): within the smaller ranges the power is the same.
-    InputError is raised for a part in which the largest component reaches 0, or varies by a factor above about 2^8.
+    InputError is raised if the ranges contain omega = 0 and other values, or if the size of the largest component
+    varies by a factor above about 2^8. If omega is 0 throughout, the power is 1.
     """
     smallest = max(min(abs(low), abs(high)) for low, high in part)
     largest = max(max(abs(low), abs(high)) for low, high in part)
@@ -78,12 +79,12 @@ def _power(exponent: int) -> float:
 
 
 def power_near(largest: float) -> float:
-    """Return the power of two by which the C text divides numbers whose largest absolute value is ``largest``."""
+    """Return the power of two by which the C code divides numbers whose largest absolute value is ``largest``."""
     return _power(frexp(largest)[1]) if largest else 1.0
 
 
 def halves(part: Part) -> tuple[Part, Part]:
-    """Return the two halves of a part of the box, divided in the middle of its widest range.
+    """Return the two halves of ``part``, ranges of the components of omega, divided in the middle of the widest range.
 
     InputError is raised if no double is inside that range, so that the part cannot be divided.
     """

@@ -40,7 +40,7 @@ HALVES = ("a", "l")
 
 
 def of_named_body(claim: Claim, named: NamedFormula, verdict: Verdict, judge: Judge) -> Verdict:
-    """Return the verdict on a claim about a quantity whose name says the body or point, such as ``I_rod`` or ``I_end``.
+    """Return the verdict on a claim about a quantity whose name states a body or point, such as ``I_rod`` or ``I_end``.
 
     Only a formula for this body and point is right. Return ``verdict`` unchanged for other names, and if it is "true",
     "false" or "doubtful". ``judge`` returns the verdict on a claim in its context.
@@ -92,7 +92,7 @@ def _judged(claim: Claim, named: NamedFormula, verdict: Verdict, stated: Context
 
 
 def _not_of_name(named: NamedFormula, verdict: Verdict) -> Verdict:
-    """Return ``verdict`` as "definition", since a quantity's name says another body or point than its formula."""
+    """Return ``verdict`` as "definition", since a quantity's name states another body or point than its formula."""
     reason = (
         f"the formula is the {verdict.recognised_as[0].name}; but the name {named.name} is for another body or point"
     )

@@ -24,9 +24,9 @@ from symrot.exact.ring.ring import FormulaRing
 __all__ = ["branch_requirements", "requirements"]
 
 MOMENT = re.compile(r"[ABC]|[IJ]_?([xyz1-3]|([xyz1-3])\2|p|perp|par|parallel|t|s|a)?", re.ASCII)
+"""Pattern of the usual names of moments of inertia, such as A, I_x and I_xx."""
 PRODUCT_OF_INERTIA = re.compile(r"[IJP]_?(xy|yx|xz|zx|yz|zy|12|21|13|31|23|32)", re.ASCII)
-"""MOMENT is the pattern of names of moments of inertia, PRODUCT_OF_INERTIA the pattern of names of products of
-inertia."""
+"""Pattern of the usual names of products of inertia, such as I_xy and I_12."""
 
 MOST_TERMS, LARGEST_DEGREE, MOST_LETTERS = 400, 24, 20
 """Limits on the shortest residual (left minus right) of a claim: terms, degree and letters, beyond which nothing is

@@ -24,8 +24,9 @@ from symrot.exact.ring.ratio import TooLarge
 __all__ = ["Infeasibility", "infeasibility_proof", "vanishes_on"]
 
 MOST_CASES = 40
+"""Largest number of cases of a proof; a case counts again after each Groebner basis that is computed for it."""
 MOST_ROUNDS = 6
-"""The largest number of cases of a proof, and of Groebner bases in one case."""
+"""Largest number of Groebner bases that are computed one after the other for one case."""
 
 MOST_PRODUCTS = 150_000
 """The largest number of products of terms in all Groebner bases of one proof."""
@@ -94,9 +95,7 @@ class _Prover:
         self.forbidden = {poly.monic() for poly in constraints.nonzero if poly and not poly.is_ground}
 
     def impossible(self, zeros: Sequence[PolyElement], rounds: int = MOST_ROUNDS) -> Infeasibility:
-        """Return the reason why the polynomials ``zeros`` cannot all vanish; raise ``_Undecided`` if no proof is
-        known.
-        """
+        """Return the reason why the polynomials ``zeros`` have no common zero; raise ``_Undecided`` without a proof."""
         self.cases += 1
         # ``rounds`` is the number of Groebner bases that may still be computed
         if self.cases > MOST_CASES or rounds == 0:

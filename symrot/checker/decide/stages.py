@@ -255,7 +255,8 @@ def _independent(nonzero: Mapping[str, Expr]) -> dict[str, Expr]:
 def _shorter(first: Expr, second: Expr) -> Expr:
     """Return the formula with the shorter text, of two formulas for the same divisor.
 
-    If one formula has more than MUCH_LARGER times as many subexpressions, return the other without comparing texts.
+    If one formula has more than MUCH_LARGER times as many symbols and operations, the other is returned, whatever its
+    text.
     """
     few, many = sorted((first, second), key=lambda formula: pieces([formula]))
     if pieces([many]) > MUCH_LARGER * pieces([few]):

@@ -126,10 +126,10 @@ def _value(formula: Any) -> Any:
 
 
 def _in_new_names(tree: Node, source: str, define: Sequence[tuple[str, Node]] = ()) -> Any:
-    """Return the SymPy value of a formula's tree, in new symbols with the letters of its text ``source``.
+    """Return the SymPy value of a formula's tree, with a new real symbol for each letter.
 
     Names in ``define``, pairs (name, tree), are replaced by their formulas. A name whose rate occurs becomes a function
-    of time.
+    of time. ``source`` is the text of the formula, for error messages.
     """
     tree = with_natural_base(tree) if has_natural_base([tree]) else tree
     quantities: dict[str, Any] = {letter: Symbol(letter, real=True) for letter in letters_of_quantities([tree])}
@@ -229,8 +229,8 @@ def _changes(match: Identification) -> tuple[int, int, int]:
 def _views(shape: tuple[int, int] | None, count: int) -> Iterator[View]:
     """Yield the arrangements of ``count`` entries in which a formula is searched.
 
-    These are the entries as they are, and for a vector or matrix transposed; for quaternions, also both of these with
-    the scalar part stored last instead of first.
+    These are the entries as they are, and for a vector or matrix transposed. With four rows or columns, as for
+    quaternions, both are also searched with the scalar part stored last instead of first.
     """
     plain = tuple(range(count))
     yield View("", shape, plain)

@@ -107,9 +107,9 @@ COMPONENTS = {(3, 1): ("first", "second", "third"), (4, 1): ("scalar", "first", 
 LEAST_OF_RELATION = 3
 """The smallest number of symbols in a relation of mechanics in ``known_formulas.toml``."""
 LEAST_OF_COMPONENT = 3
-"""The smallest number of symbols in a vector's component that is a formula of its own in ``known_formulas.toml``.
+"""The smallest number of symbols in a component of a known vector for the component to be stored as a known formula.
 
-A shorter one could mean many formulas.
+A component with fewer symbols could mean many formulas.
 """
 
 
@@ -180,7 +180,7 @@ def _selected(
 
 @cache
 def ending_of(name: str) -> str:
-    """Return the end of a known formula's name, such as ", squared" or ", 2 atan2"; "" without such an end."""
+    """Return ", squared" or an inverse function, such as ", 2 atan2", at the end of a formula's name; else ""."""
     # the formula then is a function of the quantity: its square, cosine, or half angle's cosine
     ending = re.search(r", (squared|(\S+ )?(acos|asin|atan2))$", name)
     return ending[0] if ending else ""

@@ -103,7 +103,7 @@ def _keeps_time_order(renaming: Mapping[str, str]) -> bool:
 
 
 def component(known: str, quantity: str) -> list[tuple[str, str]]:
-    """Return a pair for `is_consistent` that compares the axis in a known formula's name with that of a quantity.
+    """Return a list of at most one pair, by which `is_consistent` compares the axes of a formula's name and a quantity.
 
     For ``known`` = "second component of .." and ``quantity`` = "H_y", return [("component_2", "H_y")]. A name with
     "(parallel-axis theorem), y axis" gives ("component_y", quantity). Other names, and a quantity without an axis in

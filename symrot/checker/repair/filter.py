@@ -229,7 +229,7 @@ class NumericFilter:
         return any(entries_of(left)) or not (is_nontrivial(self.left) and is_nontrivial(self.right))
 
     def differences(self, point: Point, changes: Sequence[Change]) -> list[float]:
-        """Return left minus right of an edited claim at a point, for each entry; 0 is a zero of every shape.
+        """Return left minus right of an edited claim at a point, for each entry; a side 0 may stand for a zero matrix.
 
         Raises
         ------

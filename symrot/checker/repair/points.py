@@ -51,7 +51,7 @@ from symrot.kinematics.hamilton import hamilton
 __all__ = ["Point", "UndefinedValue", "agree", "entries_of", "points"]
 
 DERIVATIVES = 6
-"""The number 6 of values at a test point for a function of time: the function and its first five derivatives."""
+"""Number of values for a function of time at a test point: its own value and those of its derivatives up to order 5."""
 
 HEAVIEST = 3**5
 """Largest ``weight`` (cost of a multiplication) of a `Point` from which a derivative can be computed.
@@ -85,7 +85,8 @@ class Point:
     remembered : frozenset of int
         Identities (``id``) of the trees whose values are stored; these trees must live as long as the point.
     spent : list of int
-        A count of multiplications, for a budget; it is shared by all points made from this one.
+        One number, for a budget: how many nodes were evaluated, each counted with ``weight``, and large nodes more than
+        once. The list is shared by all points made from this one.
     weight : int
         The cost of multiplying two values, in float multiplications; each copy with dual numbers triples it.
     known : dict

@@ -317,8 +317,8 @@ def _corrections(
 ) -> Iterator[Correction]:
     """Yield (formula, (code, cost) of the fault) for formulas with the values ``needed`` that may replace ``piece``.
 
-    ``values`` are the present values of the piece. ``is_term`` says whether it is a term of a sum, ``is_outer`` whether
-    it is a side of the claim, or a term or factor of a side.
+    ``piece`` is a part of the claim, and ``values`` are its present values. ``is_term`` says whether it is a term of a
+    sum, ``is_outer`` whether it is a side of the claim, or a term or factor of a side.
     """
     if all(abs(b) <= CLOSE * abs(a) for a, b in zip(values, needed, strict=True)):
         return  # the piece would have to vanish

@@ -56,7 +56,7 @@ class Substitution:
 
     @property
     def identification(self) -> Identification:
-        """The relation called ``name``, as an entry of ``recognised_as`` in a verdict."""
+        """The relation called ``name`` as an Identification, such as a verdict lists in ``recognised_as``."""
         return Identification(self.name, "", self.mapping, self.source)
 
 

@@ -39,7 +39,8 @@ GENERAL = (
 )
 """Names of the formulas that are one symbol, or a vector of three symbols.
 
-Any claim whose formula is one letter would match; so it is recognised only with the letters that books use.
+Any claim whose formula is one letter or vector would match; so a claim is recognised only if it has the letters that
+books use.
 """
 
 

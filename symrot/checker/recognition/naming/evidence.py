@@ -24,8 +24,8 @@ With fewer quantities, an edited formula, such as one with another sign, may equ
 """
 
 MANY_LETTERS = 5
-"""A formula for a quantity of unknown name, one fault away from a known formula, is usually called faulty only if it
-has at least this many letters; a shorter one may be a right formula for something else.
+"""The smallest number of letters in a formula that is usually called faulty because one change makes it a known one, if
+the quantity's name has no usual meaning. A formula with fewer letters may be right for something else.
 """
 
 MANY_OCCURRENCES = 4
@@ -186,7 +186,7 @@ def _is_of_stated_flat_body(claim: Claim, near: Near) -> bool:
 def _is_component_of_quaternion(named: NamedFormula, near: Near) -> bool:
     """Return whether a claim gives a quaternion component with a wrong angle or function, as beta_1 = e_1 sin(phi).
 
-    ``near`` must be the known formula of this component, here e_1 sin(phi/2), and the fault one of angle or function.
+    ``near`` must be the known formula of this component, here e_1 sin(phi/2), and the fault a wrong angle or function.
     """
     place = re.fullmatch(r"(beta|eta|epsilon|q)_?([0-4])", named.name)
     word, _, rest = near.known.name.partition(" component of the quaternion of axis")
@@ -219,7 +219,7 @@ def _is_angle_of_entries(named: NamedFormula, near: Near) -> bool:
 def _is_component_of_parameters(named: NamedFormula, near: Near) -> bool:
     """Return whether a claim gives a component of Rodrigues parameters by a quaternion: sigma_1 by beta_0 and beta_1.
 
-    ``near`` must be a formula for the same component. The letters of the quaternion must have one stem, such as beta.
+    ``near`` must be a formula for the same component. The quaternion must be one letter with indices, such as beta_0.
     """
     place = re.fullmatch(r"[a-z]+_?([1-3])", named.name)
     word, _, rest = near.known.name.partition(" component of the ")

@@ -48,8 +48,10 @@ The name occurs in names of formulas, such as "momentum of precession".
 """
 
 RATES_OF_TOPS = ("precession", "nutation", "frequency")
-"""Words in the names of formulas for rates of a top. A claim about a component of an angular velocity, such as omega_2
-next to omega_1, does not mean these formulas."""
+"""Words in the names of known formulas for rates of a top.
+
+A claim about a component of an angular velocity, such as omega_2 given by omega_1, does not mean these formulas.
+"""
 
 OTHER_LENGTHS = (("R(_[12])?", r"[dD].*|[lLhH]|ell"), ("[abcLh]", r"[rR]"))
 """Pairs of patterns: symbols of known formulas, and letters that books never use for these symbols.

@@ -111,7 +111,7 @@ def _near_inside(claim: Claim, named: NamedFormula) -> Verdict | None:
 
 
 def _near_by_quantity(claim: Claim, named: NamedFormula) -> Verdict | None:
-    """Return the verdict "doubtful" if a change on the side of the quantity makes the claim a formula known to symrot.
+    """Return the verdict "doubtful" if a change of the quantity, not of its formula, makes the claim a known formula.
 
     For instance, k becomes k^2 in ``k = I/m``. Otherwise return None.
     """

@@ -84,9 +84,9 @@ class Search(NamedTuple):
 
 
 CLOSE = 1e-8
-"""A change of a part of the formula is tested at all points if its value at the first point is close to the needed one.
+"""The largest relative difference between two values of a part at the first test point for a test at all points.
 
-The needed value makes the whole formula right. CLOSE is the largest relative difference from the needed value.
+The values are the one after a change of the part, and the one with which the whole formula is right.
 """
 
 

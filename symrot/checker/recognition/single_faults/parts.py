@@ -163,7 +163,7 @@ For the argument a of a + b, the function subtracts the values of b. It returns 
 
 
 def _inward(function: "OfArgument", by_point: Sequence[Sequence[Any]], place: int) -> Inward:
-    """Return a function that solves an operation for its argument number ``place``, at all test points together.
+    """Return a function that solves an operation for its argument number ``place``, for all test points at once.
 
     The function takes the values that the operation should have and returns those that the argument should have, or
     None. ``by_point`` has, for each test point, the values that the arguments have in the claim. ``function``, from the
@@ -222,7 +222,7 @@ def _wrong_row(values: Values, needed: Values) -> int | None:
 
 
 def _row_of_matrix(whole: Valued, needed: Values, row: int) -> Iterator[tuple[Valued, Values]]:
-    """Yield (entry, values that it should have) for the entries in one row of the matrix in ``whole``.
+    """Yield (entry, values that the entry should have) for the entries in row ``row`` of the matrix in ``whole``.
 
     ``whole`` is a matrix times a column. If one of the yielded entries alone changes to the values in its pair (one for
     each test point), the product has the values ``needed``. Entries that multiply a zero of the column are left out.
