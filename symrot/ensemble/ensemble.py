@@ -359,8 +359,9 @@ def propagate_ensemble(
         Number of threads that compute motions.
     sensitivities : sequence of str, optional
         Initial values and constants by which all motions are differentiated: ``"omega"``, ``"attitude"``, and numbers
-        of the scene such as ``"weight"``, as for :func:`symrot.propagate`. The derivatives are ``sensitivities`` of the
-        ensemble; if they stop early, so does the motion. For every method they are computed by Taylor series.
+        of the scene such as ``"weight"``, as for :func:`symrot.propagate`. The derivatives are in the attribute
+        ``sensitivities`` of the ensemble and are computed by Taylor series for every method. If this computation stops
+        before the last time for a motion, the motion stops there too.
 
     Returns
     -------

@@ -251,11 +251,12 @@ class _Stepped:
         return times - self.epoch if self.epoch else times
 
     def clock(self, k: int, make: Callable[[Plan, SceneKernel], Any] = motion_library) -> Any:
-        """Return a function from an epoch to the rates and parameters of motion k with time counted from the epoch.
+        """Return a function that takes an epoch and returns (rates of motion k, values of their parameters).
 
-        None if the rates do not depend on time.
+        The rates are what ``make`` returns, a compiled library or a Python function, and take the time since the epoch:
+        a stepper calls the function to reset its clock to 0. Return None if the rates do not depend on time.
         """
-        # the epoch is the time, s, at which a stepper resets its clock to 0; see symrot.propagation.time_shift.clock
+        # see symrot.propagation.time_shift.clock
         if not self.kernel.rates.uses("t"):
             return None
 

@@ -83,7 +83,7 @@ class Numbers:
         variable : str
             The name of the variable, for messages.
         epoch : float
-            As for :meth:`values_of`.
+            The scene's time, s, at which the time t of the kernel is 0.
 
         Raises
         ------

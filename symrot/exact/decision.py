@@ -90,11 +90,11 @@ class Case(ABC):
     unproven : list of int
         Indices of the entries for which no proof of equality is known.
     proof_rings : tuple of FormulaRing
-        The rings, besides ``ring``, that the proofs of entries need, as far as they exist. A stage that proves the last
-        entry passes them to :meth:`rely_on`, which stores them in ``rings``.
+        The rings, besides ``ring``, in which the first stages have proven single entries. The stage that proves the
+        last entry passes them, and the rings of its own proofs, to :meth:`rely_on`.
     rings : tuple of FormulaRing
-        The same rings once all entries are proven; empty until then. Read these for a verdict: their divisors, assumed
-        to be nonzero, are among the ``conditions``.
+        The rings of all proofs once all entries are proven; empty until then. Read these, not ``proof_rings``, for a
+        verdict: their divisors, assumed to be nonzero, are among the ``conditions``.
     conditions : tuple
         Relations under which the verdict holds.
     counterexample : Counterexample or None

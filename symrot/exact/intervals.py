@@ -43,6 +43,8 @@ class Undefined(ValueError):
 
 def arc_tangent(y: Any, x: Any) -> Any:
     """Return an interval that contains atan2(y, x) for all numbers in the intervals ``y`` and ``x``, not both zero."""
+    if x.b < 0 and y.a < 0 <= y.b:  # atan2 jumps at y = 0; for y.b = 0, mpmath returns an interval from pi to -pi
+        return iv.mpf([-1, 1]) * iv.pi
     # mpmath rounds an end to four more bits and then to the precision, which may move it inward
     return iv.atan2(y, x) * (1 + iv.mpf(2) ** (1 - iv.prec) * iv.mpf([-1, 1]))
 

@@ -160,6 +160,13 @@ def test_on_the_cut_of_atan2_nothing_is_claimed():
     assert any("sqrt(x**2 + y**2)" in condition and "!= 0" in condition for condition in verdict.conditions)
 
 
+def test_an_interval_that_touches_the_cut_of_atan2_from_below_refutes_nothing():
+    """At x = 1 the square is 0, of which only an interval is known: atan2 has the value pi there, or is near -pi."""
+    x = symbols("x", real=True)
+    square = (sqrt(3) * sqrt(2 + x) - 3) ** 2
+    assert decide(Abs(atan2(-square, -1)), pi - atan(square)).verdict != "false"
+
+
 @pytest.mark.parametrize("claim", ["asin(2) == 1", "acos(-3/2) == 1", "log(-2) == 1", "log(0) == 1"])
 def test_a_number_outside_the_domain_is_refused(claim):
     with pytest.raises(InputError, match=r"expected a (positive )?number"):

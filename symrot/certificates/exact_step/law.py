@@ -115,7 +115,10 @@ def _number(value: Fraction) -> Decimal:
 
 
 def _rint(x: Any) -> Decimal:
-    """Return the whole number nearest to ``x``; as a Decimal it is a constant, whose derivative by dt is zero."""
+    """Return the whole number nearest to ``x``, a Decimal or a _Slope (a value with its derivative by the step size).
+
+    The result is a Decimal, since its derivative is zero.
+    """
     return _slope(x).value.to_integral_value(ROUND_HALF_EVEN)
 
 

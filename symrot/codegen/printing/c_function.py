@@ -52,9 +52,10 @@ class Real:
 
     @cached_property
     def near_functions(self) -> dict[str, str]:
-        """The C names of the functions of ``symrot_math.h`` by which batches replace others: ``sin`` -> ``symrot_sin``.
+        """The C name of each function in loops over many samples: ``sin`` -> ``symrot_sin``, from ``symrot_math.h``.
 
-        They are valid for moderate angles only. Functions without such a replacement have the names in ``functions``.
+        The functions of ``symrot_math.h`` are valid for moderate angles only. A function without a version there has
+        the name in ``functions``.
         """
         own = {name: f"symrot_near_{name}{self.suffix}" for name in NEAR}
         shared = {"sin": "sin", "cos": "cos", "atan2": "atan2", "select_ge": "choose_ge"}
@@ -148,11 +149,14 @@ def function_body(
         Returns the C index, such as ``2*n + k``, of a component of an argument.
     indent : str
         Text in front of each line.
-    real, near
-        As for :func:`c_expression`.
+    real : Real
+        The C type of the numbers.
+    near : bool
+        Whether the functions of ``symrot_math.h``, such as ``symrot_sin``, are called, which are valid for moderate
+        angles only.
     late : sequence of Argument
-        If empty, each output component is stored as soon as it is computed. Otherwise, all output arguments, in the
-        order in which to compute them; they are stored after all of them are computed.
+        All output arguments, in the order in which to compute them, if they are to be stored after all of them are
+        computed. If empty, each output component is stored as soon as it is computed.
     """
     # this order keeps few values in use at a time, so that they fit into registers
     results = dict(program.outputs)

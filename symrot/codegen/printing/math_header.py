@@ -29,9 +29,9 @@ _RAISED = {"binary64": (900, 200), "binary32": (90, 40)}  # a quotient below 2^-
 
 @cache
 def tail_coefficients(first: int, count: int) -> tuple[Fraction, ...]:
-    """Return ``count`` coefficients of p: sin(x) = x + x^3 p(x^2) if first = 3, cos(x) = 1 - x^2/2 + x^4 p(x^2) if 4.
+    """Return ``count`` coefficients, lowest power first, of a polynomial p that approximates the tail of a series.
 
-    The lowest power comes first.
+    For ``first`` = 3, sin(x) is about x + x^3 p(x^2); for ``first`` = 4, cos(x) is about 1 - x^2/2 + x^4 p(x^2).
     """
     # p approximates the series of sine or cosine from the term x^first/first! on, divided by x^first
     sign = -1 if first == 3 else 1

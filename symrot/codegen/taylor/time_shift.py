@@ -171,7 +171,7 @@ class _Mover:
     def written(self, form: _Form) -> Node:
         """Return the formula of ``form`` in tau = t - epoch, the time counted from the epoch.
 
-        If the form has only the coefficients of a polynomial in t, the formula is made by Horner's rule.
+        If ``form.node`` is None, the formula is made from the coefficients of the polynomial in t, ``form.terms``.
         """
         if form.node is not None:
             return form.node

@@ -1,1 +1,1 @@
-"""Limits of the effort for one decision, counted in operations and conversions, and the size of formulas."""
+"""Limits of the effort for one decision: budgets of operations and of polynomial rings; also the size of a formula."""
