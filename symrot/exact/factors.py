@@ -25,8 +25,9 @@ MOST_UNKNOWNS = 10
 """The largest number of unknowns of a polynomial that SymPy is asked to factor."""
 
 MOST_BITS = 1000
-"""The largest number of bits of a coefficient, for SymPy to factor; :func:`factor_list` allows 100 times as many if the
-polynomial has one unknown."""
+"""The largest number of bits of a coefficient of a polynomial that SymPy is asked to factor.
+
+For polynomials in one unknown, :func:`factor_list` allows 100 times as many."""
 
 
 def factor_list(poly: PolyElement) -> tuple[Any, list[tuple[PolyElement, int]]]:

@@ -92,8 +92,8 @@ def _general_torque(number: int, torque: Torque, known: set[str], switched: bool
 def _formula_torque(torque: Torque, switched: bool) -> FormulaTorque:
     """Return the structure of a torque given by formulas, in which each constant may have any value.
 
-    The constants have the same names as in the scene. If ``switched``, functions that jump, such as sign, become
-    further constants (modes).
+    The constants have the same names as in the scene. If ``switched``, functions with a jump or kink, such as sign and
+    abs, become further constants (modes).
     """
     formulas, parameters, frame = torque.formulas, tuple(torque.values), torque.frame
     if not (switched and any(has_switches(expression.parse(text, switching=True)) for text in formulas)):

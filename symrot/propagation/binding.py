@@ -35,7 +35,7 @@ def two_doubles(top: int, bottom: int) -> tuple[float, ...]:
 class Binding:
     """Function that takes a plan (the equations of a scene) and returns the values of a kernel's parameters.
 
-    The plan may have any initial state: only formulas that contain numbers of the initial state are evaluated again.
+    The plan may have any initial state: only formulas that contain components of the initial state are evaluated again.
     The values are doubles.
 
     Parameters

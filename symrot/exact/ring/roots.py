@@ -55,7 +55,10 @@ def written(node: Expr) -> str:
 
 @dataclass(frozen=True)
 class Root:
-    """A root as a variable of the ring, with ``expression^index = power_expression``; sqrt(x + 1) has the index 2."""
+    """A root as a variable of a polynomial ring, with ``expression^index = power_expression``.
+
+    sqrt(x + 1) has the index 2 and the power expression x + 1.
+    """
 
     expression: Expr
     power_expression: Expr
@@ -205,7 +208,7 @@ def _imaginary_unit() -> Root:
 
 
 def square_root_of_number(value: Rational) -> tuple[Rational, list[Root]]:
-    """Return (r, roots): the root of a positive rational is r times ``roots`` of primes.
+    """Return (r, roots): the square root of a positive rational number is r times the product of ``roots`` of primes.
 
     12/5 gives 2/5, sqrt(3) and sqrt(5).
     """

@@ -295,9 +295,9 @@ def longest_followed(
 ) -> float:
     """Return the length of a step, at most h, for which the error from a missed change of the torque is proven small.
 
-    This error is at most ``allowed``. The result has the sign of h. It is h if that is proven for h; otherwise it is
-    usually close to the longest length for which it is proven. An absolute value of 1e-300 s or less means that nothing
-    was proven.
+    The error is small if it is at most ``allowed``. The result has the sign of h. It is h if the proof succeeds for h,
+    otherwise usually close to the longest length for which it succeeds. A result of at most 1e-300 s in absolute value
+    means that nothing was proven.
 
     Parameters
     ----------

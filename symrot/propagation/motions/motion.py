@@ -142,7 +142,7 @@ class Motion(ABC):
         """
 
     def integrate(self, times: Floats, in_order: bool = False) -> tuple[Floats, Stats]:
-        """Return the N states at n times of the scene, s, in one array, shape (n, N), and the cost of the motion."""
+        """Return the N states at n times of the scene, s, as one array, shape (n, N), and the steps and evaluations."""
         states, stats = self.follow(times, in_order)
         return np.concatenate(states, axis=1) if isinstance(states, tuple) else states, stats
 
@@ -212,7 +212,7 @@ class ShiftableMotion(RestartableMotion):
         """
 
     def follow(self, times: Floats, in_order: bool = False) -> tuple[Floats, Stats]:
-        """Return the N states at n times of the scene, s, shape (n, N), and the cost.
+        """Return the N states at n times of the scene, s, shape (n, N), and the cost in steps and evaluations.
 
         ``in_order``: the times are finite and never decrease.
         """

@@ -77,10 +77,10 @@ def rests_at_corner(
 
 
 class _Number:
-    """A number with its derivatives by states and parameters; BENT, STEEP or EDGE stands for one that does not exist.
+    """A number with its derivatives by states and parameters.
 
-    BENT: difference quotients are bounded, as for ``|omega|`` at 0; STEEP: they are not; EDGE: nearby states have no
-    value.
+    BENT, STEEP or EDGE stands for a derivative that does not exist. BENT: its difference quotients are bounded, as for
+    ``|omega|`` at 0; STEEP: the quotients are not bounded; EDGE: for some nearby states the number has no value.
     """
 
     def __init__(self, value: float, slopes: Slopes, positive: bool = False, timed: bool = False) -> None:

@@ -202,10 +202,10 @@ class Crossings:
 
 
 def jumps_at_end(guards: Guards, interval: Interval) -> NDArray[np.bool_]:
-    """Return, for each of the m variables, whether the derivatives of the states by it may jump at the end of a motion.
+    """Return, for each of m variables, whether the states' derivatives by the variable may jump at the end of a motion.
 
-    They may if a function such as sign switches exactly there. ``interval`` is the last smooth interval of the motion;
-    the variables are those of ``guards``.
+    The derivatives may jump if a function such as sign switches exactly there. ``interval`` is the last smooth interval
+    of the motion; the variables are those of ``guards``.
     """
     jumps = np.zeros(len(guards.parameter_slopes.columns), dtype=np.bool_)
     f = guards.rates(interval, interval.stop, interval.last)

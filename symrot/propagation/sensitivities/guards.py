@@ -89,7 +89,7 @@ class Guards:
         self._require_settled()
 
     def _require_settled(self) -> None:
-        """Raise InputError if a variable moves the argument of a function away from a jump or kink of the function.
+        """Raise InputError if a function's argument lies at a jump or kink and changes with one of the variables.
 
         Only arguments without time and states are examined, such as that of ``sign(c - 1)`` for c = 1: the function
         never switches during the motion, but a change of the constant c changes its value.
@@ -182,7 +182,7 @@ class Guards:
     def guard(self, interval: Interval, mode: str, t: float, y: Floats) -> Gradient:
         """Return the argument of the function (sign, abs, ..) for which ``mode`` stands, with its derivatives.
 
-        For floor(x) the result is x minus the present floor.
+        For floor(x) the result is x - n, where n is the present value of the function.
         """
         inputs = self._duals(interval.regime.parameters, interval, t, y, "guards")
         return self._gradient(evaluate(interval.regime.formulas[mode], inputs, DUALS, float))

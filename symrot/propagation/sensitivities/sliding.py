@@ -61,11 +61,11 @@ def hold_at_rest(guards: Guards, interval: Interval) -> None:
 def refuse_resting(
     guards: Guards, interval: Interval, integrate: Callable[[Interval, Floats], tuple[Floats, Floats]]
 ) -> None:
-    """Raise PropagationError if a variable moves a guard of ``interval.resting`` away from zero.
+    """Raise PropagationError if a guard in ``interval.resting`` leaves zero when one of the variables changes.
 
-    These guards, arguments of functions such as sign, stay at zero in the interval, though the equations do not hold
-    them there. If a guard is moved, its function jumps or bends, and the motion has no derivatives. ``integrate`` takes
-    an interval and times, and returns the states and their derivatives at these times.
+    These guards, arguments of functions such as sign, stay at zero in the interval, though the equations do not keep
+    them there. If a guard leaves zero, its function jumps or bends, and the motion has no derivatives. ``integrate``
+    takes an interval and times, and returns the states and their derivatives at these times.
     """
     for mode in interval.resting:
         places = list(interval.places())

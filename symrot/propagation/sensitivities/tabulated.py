@@ -86,7 +86,8 @@ def _with_formulas(scene: Scene) -> Scene:
 class TableEquations:
     """The equations of a motion under a torque given by a table of samples, and of its derivatives by variables.
 
-    The variables are initial values and constants of the scene, as ``keys`` names them; they have m components.
+    The argument ``keys`` names initial values and constants of the scene, such as ``"omega"`` or ``"body.mass"``. Their
+    m components are the variables.
     """
 
     def __init__(self, scene: Scene, keys: Sequence[str]) -> None:
@@ -244,7 +245,7 @@ class _Pieces:
         self._polynomials = np.concatenate([np.moveaxis(spline.c, 0, 2) for spline in splines]).reshape(-1, 12)
 
     def at(self, t: float, side: float) -> int:
-        """Return the number of the interval that a motion enters at the time t, s; ``side`` is -1 backward in time."""
+        """Return the index of the interval that a motion enters at the time t, s; ``side`` is -1 backward in time."""
         k = int(np.searchsorted(self.edges, t, "right" if side > 0.0 else "left")) - 1
         return min(max(k, 0), len(self.edges) - 2)
 
@@ -261,9 +262,9 @@ def _unit_table(table: Table, place: int, axis: int) -> Table:
 
 
 def _sample_of(scene: Scene, variable: Variable) -> tuple[int, int] | None:
-    """Return which number of a torque's table of samples a variable is: (index of sample, index of component), from 0.
+    """Return the place of a variable in a torque's table of samples: (index of sample, index of component), from 0.
 
-    Return None for a variable that does not belong to the table.
+    Return None if the variable does not belong to the table.
 
     Raises
     ------

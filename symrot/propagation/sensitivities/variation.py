@@ -82,7 +82,7 @@ class Column:
         self.constants = every
 
     def start_from(self, initial: Initial) -> list[float]:
-        """Return the derivatives by :attr:`variable` of an initial state: of omega and the quaternion, 7 numbers."""
+        """Return the derivatives of an initial state (omega and quaternion, 7 numbers) by :attr:`variable`."""
         # only those by a small rotation of the attitude depend on the initial state
         if self.variable.moved is not None:
             return self.start
@@ -373,9 +373,9 @@ def follow_interval(
 
 
 def groups_of_columns(count: int) -> Iterator[range]:
-    """Yield the numbers 0 to ``count - 1`` of variables in ranges of at most :data:`AT_ONCE`, one for each library.
+    """Yield the indices 0 to ``count - 1`` of variables in ranges of at most :data:`AT_ONCE` indices.
 
-    A library integrates the derivatives by the variables of one range.
+    One compiled library integrates the derivatives by the variables of one range.
     """
     for first in range(0, count, AT_ONCE):
         yield range(first, min(first + AT_ONCE, count))

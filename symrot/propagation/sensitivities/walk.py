@@ -92,7 +92,10 @@ class Walk:
             previous = interval
 
     def _integrate(self, interval: Interval, times: Floats) -> tuple[Floats, Floats]:
-        """Return states and derivatives, (n, 7) and (n, 7, m), at times of an interval, s after its ``zero``."""
+        """Return the states at n times of an interval, shape (n, 7), and their derivatives by m variables, (n, 7, m).
+
+        The times are s after ``interval.zero``.
+        """
         program, parameters = self.guards.program(interval)
         values, rows = self.guards.bound(parameters, interval, "rates")
         libraries = []

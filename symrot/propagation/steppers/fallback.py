@@ -141,7 +141,7 @@ class Options:
 def integrate(
     rhs: Rhs, p: ArrayLike, y0: ArrayLike, t0: float, times: ArrayLike, tolerance: float, options: Options = Options()
 ) -> tuple[Floats, Stats]:
-    """Return the N states at the n sample times, shape (n, N), and the cost of the motion.
+    """Return the N states at the n sample times, shape (n, N), and the cost in steps and evaluations.
 
     Parameters
     ----------
@@ -481,7 +481,7 @@ class _Integration:
         """Return the length, s, at most ``step``, up to which a step's error from a missed pulse is proven small.
 
         The step begins with the states ``y`` at the scene time ``t``, when SciPy's clock shows ``now``; ``dense`` is
-        SciPy's interpolant. ``bars``: for each block of states (omega, attitude), the largest such error that is small.
+        SciPy's interpolant. ``bars``: for each block of states (omega, attitude), the largest error allowed.
         """
         assert self.deviations is not None
         path = np.abs(_FIT @ (dense(now + _NODES * step).T - y)).T.tolist()

@@ -294,7 +294,7 @@ class Integration:
         return stats_of(counts, perf_counter() - self.began, (), self.rounded_beyond)
 
     def sample(self, times: ArrayLike) -> tuple[Floats, Stats]:
-        """Return the states at sample times, s, in any order, shape (n, N), and the cost of the motion.
+        """Return the states at sample times, s, in any order, shape (n, N), and the cost in steps and evaluations.
 
         Raises
         ------
@@ -437,7 +437,7 @@ class Integration:
                 self.rounding.read(run)
 
     def step_function(self, run: Run) -> tuple[Callable[..., Any], Any, int]:
-        """Return the C function that continues a run, the parameters of its kernel, and the most steps per call."""
+        """Return the C function that continues a run, the kernel's parameters, and the limit of steps per call."""
         # a subclass may return others in the course of a run
         return self.stepper.run, self.p, self.stepper.steps_per_call
 

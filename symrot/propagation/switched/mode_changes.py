@@ -318,8 +318,8 @@ class ModeChanges(Guards):
     def _leaves_zero(self, regime: Regime, active: list[bool], piece: Piece) -> bool:
         """Give each sign(x) with the value 0 the sign of x at the end of ``piece``; return whether a value changed.
 
-        ``piece`` is a part of the motion. ``active`` says for each guard of ``regime`` whether its zero ends the
-        regime; only those functions are examined.
+        ``piece`` is an interval of the motion. ``active`` says for each guard of the smooth motion ``regime`` whether
+        its zero ends this motion; only the functions of such guards are examined.
         """
         # only functions whose guard can end the regime (active)
         numbers = [

@@ -39,7 +39,7 @@ class SwitchedSystem:
 
     @cached_property
     def switches(self) -> list[Switch]:
-        """The switching functions (sign, abs, ..) of all torques, each with its argument and the name of its value."""
+        """The switching functions (sign, abs, ..) of all torques, each with its argument and the name of its mode."""
         # the mode, a constant of the plan, is the number that replaces the function in the formulas
         return [switch for switches in self._switches_by_torque for switch in switches]
 
@@ -129,9 +129,9 @@ class SwitchedSystem:
         return self._modes_at_start({})
 
     def beside_start(self, mode: str, sign: int) -> Modes:
-        """Return the values of all functions (sign, abs, ..) just after the start, if ``mode`` is ``sign``.
+        """Return the values of all functions (sign, abs, ..) just after the start, for a given value of one of them.
 
-        A mode is the number that replaces a function in formulas.
+        ``mode`` is the name of the number that replaces this one function in formulas; ``sign``, 1 or -1, is its value.
         """
         # functions that contain this one, such as floor(sign(x) + y), differ for 1 and -1
         return self._modes_at_start({mode: sign})[0]
@@ -226,7 +226,7 @@ def _switches(torque: FormulaTorque) -> list[Switch]:
 
 
 def _is_mixed(torque: FormulaTorque, mode: str) -> bool:
-    """Return whether a formula of the torque is nonlinear in ``mode``, a number that stands for sign, abs, .."""
+    """Return whether a formula of the torque is nonlinear in the number named ``mode``, which replaces sign, abs, .."""
     # the mean of the formula's values at 1 and -1 is then not its value at 0
     own = mode.removeprefix(torque.prefix)
     nodes = [parse(formula, switching=True) for formula in torque.choices or torque.formulas]
