@@ -110,11 +110,12 @@ def cheapest(signature: Signature, formulas: Iterable[Formulas], parameter_argum
 
     Parameters
     ----------
-    signature, parameter_argument
-        Name and arguments of the program, and the name of its argument for constants, as for
-        :func:`symrot.codegen.lowering.lower.lower`.
+    signature : Signature
+        Name and arguments of the program, without the array argument for constants.
     formulas : iterable of Formulas
         The results of :func:`ways`, which all describe the same outputs.
+    parameter_argument : str
+        Name of the array argument for constants, which this function adds.
 
     Returns
     -------

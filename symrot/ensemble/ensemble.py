@@ -266,16 +266,16 @@ class Ensemble(MotionSamples):
         Parameters
         ----------
         quantity : str
-            As for :meth:`mean`.
+            A name that ``output.quantities`` of a scene accepts, such as ``"omega"``; attitudes are not accepted.
         q : float or array
             Percentages from 0 to 100, such as ``[5, 50, 95]``. For a single number, the result has shape (m, ...).
         omit_stopped : bool
-            As for :meth:`mean`.
+            Whether to skip a motion at times that it did not reach; if False, percentiles are NaN at these times.
 
         Raises
         ------
         InputError
-            As for :meth:`mean`, or if a percentage is not from 0 to 100.
+            If a percentage is not from 0 to 100, and for a quantity or sample times that :meth:`mean` refuses.
 
         Examples
         --------

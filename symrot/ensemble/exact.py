@@ -242,7 +242,7 @@ Usual = NDArray[np.bool_] | bool
 
 
 class _Part(NamedTuple):
-    """The trajectories that one call of C computes: those with the same closed form about the same body axis."""
+    """Trajectories of an ensemble with the same closed form about the same body axis, which one call of C computes."""
 
     variation: Variation
     axis: int | None
@@ -250,7 +250,7 @@ class _Part(NamedTuple):
     omega: Floats  # (n, 3)
 
     def of(self, chosen: NDArray[np.bool_]) -> "_Part":
-        """Return the trajectories k of this object for which ``chosen[k]`` is true, as a new object."""
+        """Return a :class:`_Part` with only the trajectories k for which ``chosen[k]`` is true."""
         return self._replace(rows=self.rows[chosen], omega=self.omega[chosen])
 
     @property

@@ -98,7 +98,10 @@ def follow(problem: Problem, method: str) -> Followed:
 
 
 def _together(parts: Sequence[Followed], groups: Sequence[Integers]) -> Followed:
-    """Return all results in the order of the ensemble; ``parts[k]`` has those of the motions ``groups[k]``."""
+    """Return the results of all motions in the order of the ensemble; ``parts[k]`` are results for ``groups[k]``.
+
+    ``groups[k]`` are indices of motions.
+    """
     order = np.argsort(np.concatenate(groups), kind="stable")
 
     def joined(arrays: Sequence[Any]) -> Any:

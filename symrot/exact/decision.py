@@ -125,7 +125,7 @@ class Case(ABC):
         # without such a point the equation may be true of nothing
 
     def rely_on(self, rings: tuple[FormulaRing, ...]) -> None:
-        """Add the polynomial rings that a proof uses to the evidence of the case."""
+        """Store the polynomial rings of all proofs, and the conditions under which the proofs are valid."""
         # no divisor in these rings may be zero, so the divisors become conditions
         self.rings, self.conditions = rings, self.conditions_of(rings)
 

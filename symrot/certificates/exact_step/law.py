@@ -79,6 +79,11 @@ class _Slope:
     def __abs__(self) -> "_Slope":
         return -self if self.value < 0 else self
 
+    def __eq__(self, other: object) -> bool:
+        return self.value == _slope(other).value
+
+    __hash__ = None  # type: ignore[assignment]
+
     def __lt__(self, other: Any) -> bool:
         return self.value < _slope(other).value
 

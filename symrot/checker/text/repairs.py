@@ -23,8 +23,10 @@ CALLS_FOR_ARRAYS = ("qmul(", "eye(", "⊗", "\\otimes")
 
 
 def as_typed_repairs(repairs: Sequence[Repair], claim: Claim, notation: Notation) -> tuple[Repair, ...]:
-    """Return ``repairs`` in the notation of the claim's text, each text once, without those that people would not
-    write.
+    """Return ``repairs`` in the notation of the claim's text, each text once.
+
+    Left out are repairs that people would not write, and repairs that lack a formula which the claim writes in a short
+    form.
     """
     typed = [
         repair if repair.code in AS_TYPED else in_notation(repair, claim, notation)

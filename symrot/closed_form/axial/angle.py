@@ -131,11 +131,9 @@ class Turning:
         return self._rate[0] * t * (1.0 + x * series) + self._push[0] * t * t * series
 
     def _near(self, t: Floats) -> Floats:
-        """Return a multiple (by the constructor's ``factor``) of the angle of rotation, in revolutions modulo 1.
+        """Return the angle of rotation times the constructor's ``factor``, in revolutions modulo 1, near the start.
 
-        This method serves times near the start.
-
-        If ``|decay t| <= dd.NEAR``, the power series of (exp(x) - 1 - x)/x^2 is accurate; it is evaluated in
+        At times with ``|decay t| <= dd.NEAR``, the power series of (exp(x) - 1 - x)/x^2 is accurate; it is evaluated in
         double-double numbers.
         """
         time = t, np.zeros_like(t)
@@ -146,10 +144,10 @@ class Turning:
         return _less_whole_turns(dd.add(dd.multiply(dd.multiply(time, self._rate), first), pushed))
 
     def _far(self, t: Floats) -> Floats:
-        """Return a multiple (by the constructor's ``factor``) of the angle of rotation, in revolutions modulo 1.
+        """Return the angle of rotation times the constructor's ``factor``, in revolutions modulo 1, at late times.
 
-        This method serves times with ``|decay t| > dd.NEAR``. A steady part, linear in t, and a transient part are
-        computed in double-double numbers and added.
+        These are times with ``|decay t| > dd.NEAR``. The steady part of the angle, linear in t, and the transient part
+        are computed in double-double numbers and added.
         """
         # (push/decay) t + (rate - push/decay) (1 - exp(x))/decay, whose parts would cancel at smaller x
         time = t, np.zeros_like(t)

@@ -238,7 +238,7 @@ def _differences(inertia: list[float], omega: list[float], w: list[Any]) -> tupl
     """Return (differences, defect): [I2 - I3, I3 - I1, I1 - I2], and |L|^2 - 2 T I_mid, as mpmath numbers.
 
     ``inertia`` and ``omega`` are lists hi, lo, hi, lo, .. of doubles, along the principal axes. The defect leaves out
-    the components of omega that are zero in ``w``, a copy of omega whose negligible components are set to zero.
+    the components of omega that are zero in ``w``: omega in another unit, with negligible components set to zero.
     """
     moments = [Fraction(high) + Fraction(low) for high, low in zip(inertia[::2], inertia[1::2], strict=True)]
     rates = [Fraction(high) + Fraction(low) for high, low in zip(omega[::2], omega[1::2], strict=True)]
@@ -256,10 +256,11 @@ def _rounded(x: Fraction) -> Any:
 def _canonical(
     moments: list[Any], w: list[Any], differences: list[Any], defect: Any
 ) -> tuple[list[int], list[int], int]:
-    """Return the order of the principal axes for which the motion's formulas hold, their signs, and that of I3 - I2.
+    """Return (axes, signs, sign of I3 - I2) for which the formulas of the motion hold.
 
-    The first list are the indices of the axes that :file:`free_body.h` calls e1, e2, e3, such that I2 lies between I1
-    and I3. ``w`` is the angular velocity; for ``differences`` and ``defect`` see :func:`_differences`.
+    ``axes`` are the indices of the principal axes that :file:`free_body.h` calls e1, e2, e3, so that I2 lies between I1
+    and I3. ``signs`` are 1 or -1 for each of them. ``w`` is the angular velocity; for ``differences`` and ``defect``
+    see :func:`_differences`.
     """
     above = [differences[2] >= 0, differences[0] >= 0, differences[1] >= 0]  # I_i >= I_(i+1)
     largest = 0 if above[0] and not above[2] else 1 if above[1] else 2

@@ -144,11 +144,11 @@ class Integers:
         return product(leaving, conjugate(self._near.quaternion(Fraction(side * int(NEAR)))))
 
     def _begin(self, side: int) -> tuple[Fraction, Fraction, Quaternion]:
-        """Return (time, Omega, rotation) from which the asymptotic series before or after resonance are applied.
+        """Return (time, Omega, rotation) where the asymptotic series before or after resonance begin to be used.
 
-        ``side`` is -1 before resonance (axial rate Omega < 0) and 1 after it. Omega is the axial rate at this time, and
-        the rotation that of the body from the start to this time. If the motion starts on this side of resonance, they
-        are 0, the initial axial rate, and the identity.
+        ``side`` is -1 before resonance (axial rate Omega < 0) and 1 after it. Omega is the axial rate at this time; the
+        rotation takes the body from its attitude at the start to its attitude at this time. For a motion that starts on
+        this side of resonance, the result is 0, the initial axial rate, and the identity.
         """
         if self._side(self._start) == side:
             return Fraction(0), self._start, ONE

@@ -42,9 +42,11 @@ def event_definitions(
         The event functions.
     states : sequence of str
         Names of the states, in order.
-    edges, scales
-        Blocks of states, as for :func:`symrot.propagation.steppers.dop853.translation_unit`. The error of a state is
-        assumed to be a few units in the last place of the largest state in its block, or of the scale of the block.
+    edges : sequence of int
+        State i is in block j if ``edges[j] <= i < edges[j + 1]``.
+    scales : sequence of float
+        One number per block. The error of a state is assumed to be a few units in the last place of this number or,
+        if it is 0, of the largest state in the block.
     """
     places = {"t": "t", **{name: f"y[{i}]" for i, name in enumerate(states)}}
     for argument in program.signature.arguments:

@@ -40,7 +40,7 @@ def tail_coefficients(first: int, count: int) -> tuple[Fraction, ...]:
 
 @cache
 def _arc_coefficients(count: int) -> tuple[Fraction, ...]:
-    """Return ``count`` coefficients of p in atan(z) = z + z^3 p(z^2), lowest power first."""
+    """Return ``count`` coefficients, lowest power first, of a polynomial p: atan(z) is about z + z^3 p(z^2)."""
     return _nearest([Fraction((-1) ** (k + 1), 2 * k + 3) for k in range(_ARC_TERMS)], _ARC_SQUARE, count)
 
 

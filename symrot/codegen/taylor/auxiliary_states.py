@@ -355,7 +355,7 @@ def _rebuilt(closure: _Closure, rates: list[list[_Term]]) -> Recurrences:
     }  # fmt: skip
 
     def left(s: Series) -> list[int]:
-        """Return the indices of the operands that ``s`` keeps: all but those that auxiliary states replace."""
+        """Return the indices of the operands of the series ``s`` that auxiliary states do not replace."""
         return [i for i in s.operands if i not in closure.parts.get(s, (set(),))[0]]
 
     needed: set[int] = set()

@@ -171,8 +171,8 @@ class _Jet:
     def slot(self, number: int, stage: str, sums: str) -> str:
         """Return the C expression for coefficient n of slot ``number``, a sum of convolutions ``sum(u[k] v[n-k])``.
 
-        ``stage`` is "first" for n = 0, "second" for n = 1, else "later". ``sums`` is "a" for even n, "b" for odd n: the
-        C variable ``a{number}`` or ``b{number}`` has the terms k = 1 to n - 1.
+        ``stage`` is "first" for n = 0, "second" for n = 1, else "later". ``sums`` is, from n = 2 on, "a" for even n and
+        "b" for odd n: the C variable ``a{number}`` or ``b{number}`` has the terms k = 1 to n - 1.
         """
         # the C variable such as a3 holds the terms k = 1..n-1; terms with coefficients n are added here
         older = f"{sums}{number}" if stage == "later" else ""
@@ -230,7 +230,8 @@ class _Jet:
     def coefficient(self, i: int, n: str, stage: str, sums: str) -> list[str]:
         """Return the C statements that set the variable ``v{i}`` to coefficient ``n`` (C text) of series ``i``.
 
-        ``stage`` and ``sums`` are as for :meth:`slot`.
+        ``stage`` is "first" for n = 0, "second" for n = 1, else "later"; ``sums`` is, from n = 2 on, "a" for even n and
+        "b" for odd n.
         """
         s, name = self.series[i], f"v{i}"
         if s.rule == "sum":
@@ -306,7 +307,7 @@ class _Jet:
         """Return the C statements that compute coefficient ``n`` of all series, then coefficient n + 1 of the states.
 
         The C text ``n`` is ``"0"``, ``"1"``, ``"n"`` (an even index from 2 on) or ``"m"`` (an odd index from 3 on);
-        ``stage`` is "first", "second" or, for both of the others, "later". ``sums`` is "a" for an even index, else "b".
+        ``stage`` is then "first", "second", "later" and "later", and ``sums`` is "", "", "a" and "b".
         """
         lines: list[str] = []
         made: set[int] = set()

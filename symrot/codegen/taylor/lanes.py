@@ -87,7 +87,7 @@ def lay_out(system: Recurrences, edges: Sequence[int]) -> Layout:
 
 
 def cost(layout: Layout) -> int:
-    """Return an estimate of the time that one coefficient of all series takes: the number of columns plus that of rows.
+    """Return an estimate of the time that one coefficient of all series takes: number of columns plus number of rows.
 
     A column is a vector of four convolutions, a row a vector of up to four series.
     """
@@ -213,9 +213,9 @@ class _Placer:
         return Layout(self.series, tuple(self.rows), tuple(rates), tuple(self.columns), own, self.system.states, seeds)
 
     def _shape(self, i: int) -> tuple[int, ...]:
-        """Return a part of the sort key of series ``i`` among the series that are computed by the same rule.
+        """Return two numbers by which series with the same rule are sorted, so that similar series share a SIMD vector.
 
-        Neighbours in the order share a SIMD vector (row): sums with about equally many products, for instance.
+        For series ``i`` they are (whether it is an exponential, minus the number of products that only sums contain).
         """
         s = self.series[i]
         products = sum(operand in self.inlined for operand in s.operands)

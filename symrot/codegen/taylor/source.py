@@ -1,4 +1,4 @@
-"""C code of the Taylor series of one motion: one function computes the jet, all Taylor coefficients of all states.
+"""C code of the Taylor series of one motion: a function computes all Taylor coefficients of all states (the jet).
 
 The series are arranged in rows (SIMD vectors of four), and their products in columns (convolutions of two vectors), see
 :mod:`symrot.codegen.taylor.lanes`. The code is placed between :file:`taylor.h`, the operations on vectors, and
@@ -155,8 +155,8 @@ class _Jet:
         """Return the C expression for coefficient n of the four convolutions in column ``index``.
 
         The text is empty if all four are zero. ``stage`` is "first" for n = 0, "second" for n = 1, else "later".
-        ``sums`` is "a" for even n, "b" for odd n: the C variable ``a{index}`` or ``b{index}`` has the terms k = 1 to
-        n - 1, to which this expression adds k = 0 and k = n.
+        From n = 2 on, ``sums`` is "a" for even n and "b" for odd n: the C variable ``a{index}`` or ``b{index}`` has
+        the terms k = 1 to n - 1, to which this expression adds k = 0 and k = n.
         """
         a, b, ends = self.layout.columns[index]
         known = f"{sums}{index}" if stage == "later" else ""
@@ -180,8 +180,9 @@ class _Jet:
     def sum(self, row: Row, stage: str, sums: str, factor: str = "", fused: str = "V_FMA") -> str:
         """Return the C expression for coefficient n of the sums in ``row``: one sum of series and products per lane.
 
-        The expression is multiplied by ``factor`` (C text; empty for 1). ``fused`` is the C function that computes
-        a b + c; ``stage`` and ``sums`` are as for :meth:`column`.
+        The expression is multiplied by ``factor`` (C text; empty for 1). ``stage`` is "first" for n = 0, "second" for
+        n = 1, else "later"; ``sums`` is, from n = 2 on, "a" for even n and "b" for odd n. ``fused`` is the C function
+        that computes a b + c.
         """
         # terms that are computed last are added last, so that others need not wait
         value = ""
@@ -227,7 +228,7 @@ class _Jet:
         """Return the C statements that set the vector ``r{number}`` to coefficient n of the series in row ``number``.
 
         A row is a vector of up to four series. The index ``n`` is C text, ``stage`` is "first" for n = 0, "second" for
-        n = 1, else "later", and ``sums`` is "a" for even n, "b" for odd n.
+        n = 1, else "later"; ``sums`` is, from n = 2 on, "a" for even n and "b" for odd n.
         """
         row, name = self.rows[number], f"r{number}"
         terms = [self.picked(term.pack) for term in row.terms]
@@ -270,7 +271,7 @@ class _Jet:
     def _quotient(self, row: Row, name: str, stage: str, terms: list[str], total: str) -> list[str]:
         """Return the C statements that set the variable ``name`` to coefficient n of w = u/v: ``(u[n] - total)/v[0]``.
 
-        ``terms`` are the C texts of v[n] and u[n], ``total`` is that of ``sum(v[k] w[n-k], k = 1..n)``.
+        ``terms`` are the C texts of v[n] and u[n], ``total`` is the C text of ``sum(v[k] w[n-k], k = 1..n)``.
         """
         # u[n] is missing if u is constant
         divisor, upper = f"d{name[1:]}", "V_ALL(0.0)"
@@ -359,7 +360,7 @@ class _Jet:
         """Return the C statements that compute coefficient ``n`` of all series, then coefficient n + 1 of the states.
 
         The C text ``n`` is ``"0"``, ``"1"``, ``"n"`` (an even index from 2 on) or ``"m"`` (an odd index from 3 on);
-        ``stage`` is "first", "second" or, for both of the others, "later". ``sums`` is "a" for an even index, else "b".
+        ``stage`` is then "first", "second", "later" and "later", and ``sums`` is "", "", "a" and "b".
         """
         lines: list[str] = []
         done, packed = set(range(self.state_rows)), set[Pack]()
@@ -421,9 +422,10 @@ class _Jet:
         return lines
 
     def completed_sums(self) -> list[str]:
-        """Return the C statements that complete the C variables ``b{i}``, the sums for coefficient n + 1 of column i.
+        """Return the C statements that complete ``b{i}``, the inner terms of column i for coefficient n + 1.
 
-        The loops left out a[1] b[n] and a[n] b[1], because coefficient n was still unknown.
+        Column i is a vector of four convolutions. The C loops of :meth:`loops` left out the terms a[1] b[n] and
+        a[n] b[1], since coefficient n was still unknown.
         """
         lines: list[str] = []
         for i, (a, b, _) in enumerate(self.layout.columns):

@@ -1,1 +1,1 @@
-"""Limits of the effort for one decision: budgets of operations and of polynomial rings; also the size of a formula."""
+"""Limits of effort: operations for one claim, polynomial rings for one decision; also the size of a formula."""

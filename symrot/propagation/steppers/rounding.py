@@ -48,7 +48,7 @@ class RoundingSum:
         return {"rounded": self.squares, "largest": self.size}
 
     def read(self, run: Any) -> None:
-        """Take over the sum from a run in C that has continued it."""
+        """Replace the sum by that of the C struct ``run``, which has added the errors of further steps."""
         self.squares, self.size = run.rounded, run.largest
         if self.beyond is None and not math.isnan(run.rounded_from):
             self.beyond = run.rounded_from
