@@ -37,8 +37,7 @@ from symrot.errors import InputError
 from symrot.exact import is_zero, normal_form
 from symrot.exact.angles import cyclotomic
 from symrot.exact.decide import decide
-from symrot.exact.intervals import is_nonnegative_at
-from symrot.exact.intervals import arc_tangent
+from symrot.exact.intervals import arc_tangent, is_nonnegative_at
 
 x, y = symbols("x y", real=True)
 p = symbols("p", positive=True)
