@@ -11,6 +11,7 @@ import pytest
 from mpmath import iv, mp
 from sympy import (
     Abs,
+    I,
     Integer,
     Rational,
     acos,
@@ -158,6 +159,17 @@ def test_on_the_cut_of_atan2_nothing_is_claimed():
     verdict = symrot.check("atan2(y, x) == 2*atan2(y, x + sqrt(x**2 + y**2))")
     assert verdict.verdict == "true"
     assert any("sqrt(x**2 + y**2)" in condition and "!= 0" in condition for condition in verdict.conditions)
+
+
+def test_powers_of_exponentials_in_dependent_roots_are_read():
+    """The factors of both divisors make one absolute value depend on others, with exponents that no side contains."""
+    x = symbols("x", real=True)
+
+    def turned(angle):
+        return exp(I * angle) - exp(-I * angle)
+
+    decision = decide(Abs(sin(x)) + 1 / sin(x / 2), Abs(turned(x)) / 2 + 2 * I / turned(x / 2))
+    assert decision.verdict != "false"
 
 
 @pytest.mark.parametrize("power", [80, 100, 150])

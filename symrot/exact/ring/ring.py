@@ -359,8 +359,10 @@ class FormulaRing:
             return ratios.number(int(node.p), int(node.q))
         if node in self.rewritten:
             return self.ratio(self.rewritten[node])
-        if node is S.Exp1 or (isinstance(node, sympy.exp) and node.args[0] in self.exponents):
-            return self._read_exponential(self.exponents[node.args[0] if node.args else Integer(1)])
+        if node is S.Exp1 or isinstance(node, sympy.exp):
+            exponent = node.args[0] if node.args else Integer(1)
+            # SymPy writes a power of a variable exp(x) as exp(2*x), which need not occur in the formulas
+            return self._read_exponential(self.exponents.get(exponent) or linear_form(exponent, turns=False))
         if node.is_Add:
             return ratios.add([self.ratio(term) for term in node.args])
         if node.is_Mul:
@@ -409,8 +411,10 @@ class FormulaRing:
         factors = []
         for atom, coefficient in form.terms:
             base = self.exponent_bases[atom]
-            generator = Ratio(self.ring.gens[self.exponentials[atom]])
-            factors.append(self._power(generator, int(coefficient / base), self.generators[self.exponentials[atom]]))
+            generator, multiple = Ratio(self.ring.gens[self.exponentials[atom]]), coefficient / base
+            if multiple.denominator != 1:
+                raise AssertionError(f"expected a whole multiple of {base}*{atom} in an exponent, got {coefficient}")
+            factors.append(self._power(generator, int(multiple), self.generators[self.exponentials[atom]]))
         return self.ratios.multiply(factors)
 
     # -- back to SymPy ----------------------------------------------------------------------------------------------
