@@ -124,8 +124,8 @@ def _with_fitting_line(
 def with_all_conditions(verdict: Verdict, conditions: Sequence[Sequence[str]], both_signs: bool) -> Verdict:
     """Return ``verdict``, on several equations, with the conditions of all of them: "a > 0 and c > 0".
 
-    ``conditions`` has, for each conditional equation, its alternative conditions, which are joined by "or" without
-    brackets. If ``both_signs``, the two equations are those with the upper and the lower sign of ±, and the conditions
+    ``conditions`` has, for each conditional equation, its alternative conditions, which are joined by "or" in brackets.
+    If ``both_signs``, the two equations are those with the upper and the lower sign of ±, and the conditions
     stay separate: "a > 0 for the upper sign".
     """
     texts = list(dict.fromkeys(" or ".join(alternatives) for alternatives in conditions))
@@ -134,8 +134,17 @@ def with_all_conditions(verdict: Verdict, conditions: Sequence[Sequence[str]], b
     if both_signs:
         required = tuple(f"{text} for the {word} sign" for text, word in zip(texts, ("upper", "lower"), strict=False))
     else:
-        required = tuple(conditions[0]) if len(texts) == 1 else (" and ".join(texts),)
+        required = tuple(conditions[0]) if len(texts) == 1 else (" and ".join(map(_bracketed, texts)),)
     return replace(verdict, requires=required, conditions=(*required, *others), diagnosis=Diagnosis("none", ""))
+
+
+def _bracketed(text: str) -> str:
+    """Return a condition in brackets if it has an "or" outside of brackets, so that "and" cannot split it."""
+    depth, outside = 0, []
+    for letter in text:
+        depth += (letter == "(") - (letter == ")")
+        outside.append(letter if not depth else "|")
+    return f"({text})" if " or " in "".join(outside) else text
 
 
 def _as_named_chain(line: Sequence[Claim], verdicts: Sequence[Verdict], notation: Notation) -> list[Verdict]:
