@@ -74,7 +74,7 @@ def quoted(value):
 
 
 # --- expressions ------------------------------------------------------------------------------------------------------
-# The method value(numbers, names) of a node returns its value; ``numbers`` is an arithmetic of the next section, and #
+# The method value(numbers, names) of a node returns its value; ``numbers`` is an arithmetic of the next section, and
 # ``names`` maps the names of variables to their values.
 
 
@@ -360,7 +360,7 @@ class Names(dict):
 def at_a_point(compute):
     """Return the value of ``compute()``, which draws a random point.
 
-    If the point is unsuitable (division by zero), ``compute`` is called again.
+    If the point is unsuitable (division by zero), ``compute`` is called again; ValueError is raised after 200 calls.
     """
     for _ in range(200):
         try:
@@ -1112,7 +1112,7 @@ class Specification:
 def draw_hypothesis(members, names):
     """Assign random values in ``names`` to the symbols ``members``: the entries of a rotation matrix or unit vector.
 
-    Nine symbols get the entries of a matrix, row by row; fewer get the components of a vector.
+    Nine symbols get the entries of a matrix, row by row; another number of symbols gets the components of a vector.
     """
     # 2*v*v^T + 2*q0*[v]x + (2*q0^2 - 1)*1 for the unit quaternion (q0, v)
     vector = [names.numbers.draw() for _ in range(4 if len(members) == 9 else len(members))]
@@ -1188,7 +1188,7 @@ def check_series(series, functions, real):
 
     def left_out():
         numbers = Decimals()
-        x = numbers.number(split).sqrt() * randbelow(2**64) / 2**64
+        x = numbers.number(split).sqrt() * (randbelow(2**65) - 2**64) / 2**64  # of either sign
         return abs(polynomial.value(numbers, {"x": x}) / exact.call(numbers, [x]) - 1)
 
     # what the certificate states, and at most a quarter of a unit in the last place
@@ -1271,7 +1271,10 @@ class ExactPoint(NamedTuple):
 
 
 def exact_point(specification):
-    """Return a random point at which all inputs differ, so that a C text cannot use one input in place of another."""
+    """Return a random point at which all inputs differ, so that a C text cannot use one input in place of another.
+
+    ValueError is raised if two inputs are the same, or one is pi.
+    """
     names = Names(AnyFunctions())
     inputs = specification.set_values(names)
     need(
@@ -1341,13 +1344,14 @@ def hexadecimal(text, place):
 
 
 def point_of_box(data, specification, real):
-    """Return a random point of the box for which rounding errors are bounded, or None if no point can be drawn."""
-    # no bounds, or a scene's parameters
+    """Return a random point of the box for which rounding errors are bounded, or None if no point can be drawn.
+
+    No point is drawn without bounds, for the parameters of a scene, or if points of the box are excluded.
+    """
     if "rounding" not in data or data["spec"]["parameters"]:
         return None
     check_shape(data["rounding"], ROUNDING_SHAPE, "rounding")
     bounds = data["rounding"]
-    # points of the box are excluded
     if hexadecimal(bounds["clearance"], "rounding.clearance"):
         return None
     numbers = Decimals()

@@ -213,8 +213,8 @@ def run(options: Namespace, say: Progress) -> ModeReport:
     Raises
     ------
     InputError
-        If the options choose no mode or more than one, include an option that the mode does not accept or a wrong
-        value, or if the mode refuses the scene or a file.
+        If the options choose no mode or more than one; if the mode does not accept an option; if an option has a wrong
+        value; or if the mode cannot use the scene or a file.
     SymrotError
         If a mode fails, for instance because reference solutions differ.
     """

@@ -2,7 +2,8 @@
 
     python -m symrot.bench.ensemble [--rounds 9] [--orders] [--motion NAME] [--many 4096]
 
-The error is the largest of the first 16 trajectories against heyoka in long double, which is compared with 40 digits.
+The error is the largest deviation of the first 16 trajectories from a reference, heyoka in long double. One trajectory
+of the reference is checked against a solution with 40 digits.
 ``--orders`` compares orders of symrot's series instead.
 """
 
@@ -39,7 +40,10 @@ class Start(NamedTuple):
     exact: Floats
 
     def error(self, states: Floats) -> float:
-        """Return the largest error of the end states, whose row k belongs to trajectory k."""
+        """Return the largest deviation from the reference among the computed end states of the first trajectories.
+
+        Row k of ``states`` is the state of trajectory k at the end time.
+        """
         # Only the first trajectories have a reference.
         pairs = zip(states[: len(self.exact)], self.exact, strict=True)
         return float(max(self.problem.largest_error(computed, exact) for computed, exact in pairs))

@@ -79,10 +79,10 @@ def _samples(name: str, count: int) -> list[Floats]:
 
 @cache
 def _block(name: str, shape: str, count: int, place: int) -> tuple[Floats, Floats]:
-    """Return the arrays (inputs, outputs) of ``count`` samples, which the kernels of all tools read and write.
+    """Return the arrays (inputs, outputs) of ``count`` samples, which all tools' versions of the kernel ``name`` use.
 
-    A sample is a row of an array for the ``shape`` ``"one"``, and a column for batches. ``place`` numbers several equal
-    pairs of arrays at different places in memory.
+    A sample is a row of an array for the ``shape`` ``"one"``, and a column for batches. Another number ``place`` gives
+    arrays with the same values at another place in memory.
     """
     samples = np.concatenate(_samples(name, count))
     size = sum(a.size for a in kernel_program(name).signature.arguments if a.role == "out")
@@ -102,7 +102,10 @@ def _block(name: str, shape: str, count: int, place: int) -> tuple[Floats, Float
 
 
 def _addresses(name: str, shape: str, count: int, place: int) -> Any:
-    """Return a C array with the address of each argument of the kernel ``name`` in the arrays of :func:`_block`."""
+    """Return a C array with the address of each argument of the kernel ``name``.
+
+    The arguments lie in the arrays (inputs, outputs) that ``_block(name, shape, count, place)`` returns.
+    """
     addresses, offsets = [], {"in": 0, "out": 0}
     for argument in kernel_program(name).signature.arguments:
         block = _block(name, shape, count, place)[argument.role == "out"]
@@ -138,9 +141,10 @@ def _in_c(
 ) -> tuple[dict[str, Callable[[int], float]], Floats]:
     """Compile the C ``text`` of the kernel ``name`` with its drivers; return timing functions and outputs.
 
-    The functions, one for each shape of input, return seconds per sample; their argument is the number of a memory
-    block. The outputs are those for the batch that is small enough for the processor's cache, ``"cached"`` of SHAPES.
-    ``prepare`` sets up the loaded library.
+    The timing functions are a dictionary by shape of input: one sample at a time, a batch small enough for the
+    processor's cache (``"cached"``), a batch of ``many`` samples (left out if that is 0). Each returns seconds per
+    sample; its argument is the ``place`` of :func:`_block`. The outputs are for the batch ``"cached"``. ``prepare`` is
+    called with the loaded library.
     """
     loaded = ctypes.CDLL(str(build_cache.build(text, f"bench_{name}", FLAGS)))
     prepare(loaded)

@@ -106,9 +106,10 @@ def measure(name: str | None = None, quick: bool = False, say: Progress = lambda
 
 
 def _row(about: str, scene: Scene) -> tuple[dict[str, Any], dict[str, Callable[[], object]]]:
-    """Return a row of the table for ``scene``, with the times still missing, and the functions to be timed.
+    """Return the measurements of ``scene`` without its times, which are None, and a dictionary of functions to time.
 
-    ``about`` describes the motion. The functions are a map from the time that is missing, such as ``"own motion"``.
+    ``about`` describes the motion. A key of the dictionary, such as ``"own motion"``, says which time the function
+    measures: here of the motion with the kernel specialised to the scene.
     """
     plans = {"general": general_plan(scene), "own": make_plan(scene)}
     row: dict[str, Any] = {"motion": about}

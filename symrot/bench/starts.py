@@ -171,9 +171,10 @@ def changed_starts(scenes: list[str], rounds: int) -> None:
 
 
 def _ensemble(scene: Scene, n: int, random: np.random.Generator) -> Iterator[tuple[str, dict[str, Any]]]:
-    """Yield two ensembles of ``n`` motions near that of ``scene``: other initial states, then other constants too.
+    """Yield two ensembles of ``n`` motions similar to the motion of ``scene``.
 
-    Each is a pair (what varies, in words; arguments of :func:`propagate_ensemble`).
+    In the first ensemble the initial states vary, in the second also the inertia tensor, or the principal moments and
+    constants of the torque. Each ensemble is a pair (what varies, in words; arguments of :func:`propagate_ensemble`).
     """
     omega, quaternion = _start(scene)
     if sum(w == 0 for w in scene.initial.omega_b) == 2 and scene.torques:

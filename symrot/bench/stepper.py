@@ -30,10 +30,10 @@ Floats = NDArray[np.float64]
 
 
 def measure(tolerance: float, stop: float, rounds: int) -> list[Measured]:
-    """Return one measured run per contestant: symrot, by hand with -O2, by hand with -O3, SciPy.
+    """Return one measured run for each contestant: symrot's stepper, handwritten C with -O2 and with -O3, SciPy.
 
-    Evaluations of the rates count as steps. The error is the largest difference of a component, at the end
-    time, from a run of the stepper by hand in long double.
+    Evaluations of the rates count as steps. The error is the largest difference of a component, at the end time, from
+    the handwritten stepper in long double.
     """
     kernel = text_by_hand("free_body.c")
     by_hand = kernel + text_by_hand("stepper_by_hand.c")

@@ -1188,7 +1188,7 @@ def check_series(series, functions, real):
 
     def left_out():
         numbers = Decimals()
-        x = numbers.number(split).sqrt() * randbelow(2**64) / 2**64
+        x = numbers.number(split).sqrt() * (randbelow(2**65) - 2**64) / 2**64  # of either sign
         return abs(polynomial.value(numbers, {"x": x}) / exact.call(numbers, [x]) - 1)
 
     # what the certificate states, and at most a quarter of a unit in the last place

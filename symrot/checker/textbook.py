@@ -233,7 +233,10 @@ is lost with the bars.
 
 
 def _is_reading(claim: Claim, other: tuple[str, Node, Node], lost: Collection[str]) -> bool:
-    """Return whether ``other`` differs from a claim only by lost characters put back on its left side."""
+    """Return whether a relation differs from a claim only on the left side, by characters that extraction lost.
+
+    ``other`` is the relation as (sign, left side, right side); ``lost`` are kinds of characters, keys of ``LOSSES``.
+    """
     assert claim.relation is not None
     return other[2] == claim.relation[2] and differs_by_lost_characters(claim.relation[1], other[1], lost)
 
@@ -259,9 +262,10 @@ def differs_by_lost_characters(printed: Node, right: Node, lost: Collection[str]
 
 
 def _extracted(node: Node, lost: Collection[str]) -> Node:
-    """Return a formula without its characters of the kinds ``lost``: ``a + b`` for ``a - b`` without minus signs.
+    """Return the formula that is left if the extraction of a text loses characters of the kinds ``lost``.
 
-    The terms are a and -b, so that ``a - b`` without its minus sign is the sum of a and b.
+    For "minus signs", ``a - b``, the sum of a and -b, becomes ``a + b``. The kinds are keys of ``LOSSES``; "token
+    order" and unknown kinds change nothing here.
     """
     node = replace(node, args=tuple(_extracted(child, lost) for child in node.args))
     for loss in lost:

@@ -58,9 +58,10 @@ def attitudes(quaternions: Floats) -> Floats:
 
 
 def turned(frame: Frame, quaternions: Floats) -> Floats:
-    """Convert attitudes, shape (n, 4), to the axes ``frame`` of a heavy top's formulas.
+    """Convert attitudes of a heavy top, shape (n, 4), to the axes of space and body in ``frame``.
 
-    The result has the shape (n, 8): double-double numbers, hi and lo of each component.
+    The formulas of the motion hold in these axes. The result has the shape (n, 8): double-double numbers, hi and lo of
+    each component.
     """
     # the same numbers as from Frame.start for each attitude
     attitudes = _units(quaternions)

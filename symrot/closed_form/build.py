@@ -2,7 +2,7 @@
 
 Most closed forms consist of two C files, compiled in parallel: ``name.c`` computes the constants of a motion, and
 ``name_at.c`` contains the loops over samples; some need no ``name.c``. Double-double arithmetic (sums of two doubles)
-requires that every operation is rounded separately. Each motion tests this before it is computed.
+requires that every operation is rounded separately; the compiled code is tested for this before it computes a motion.
 """
 
 import ctypes

@@ -138,7 +138,8 @@ def _is_driven(scene: Scene) -> bool:
 def _driven_axis(scene: Scene) -> int | None:
     """Return the index of the principal axis about which the body rotates at all times; 0 if it stays at rest.
 
-    None if the axis of rotation changes, or if the torques are not constant torques in the body and linear damping.
+    None if the axis of rotation changes or is no principal axis that the scene gives, if a torque is neither constant
+    in the body nor linear damping, or if the scene has no torque.
     """
     if not _is_driven(scene):
         return None

@@ -106,15 +106,16 @@ def ways(value: Formulas, chained: Formulas, base: Program, entries: Entries, gr
 def cheapest(signature: Signature, formulas: Iterable[Formulas], parameter_argument: str = "p") -> Lowered:
     """Return the program with the fewest operations among programs for equal formulas.
 
-    Changes of sign count only between programs with equal numbers of other operations.
+    Changes of sign are not counted, except to choose between programs that are equal in the number of other operations.
 
     Parameters
     ----------
-    signature, parameter_argument
-        Name and arguments of the program, and the name of its argument for constants, as for
-        :func:`symrot.codegen.lowering.lower.lower`.
+    signature : Signature
+        Name and arguments of the program, without the array argument for constants.
     formulas : iterable of Formulas
         The results of :func:`ways`, which all describe the same outputs.
+    parameter_argument : str
+        Name of the array argument for constants, which this function adds.
 
     Returns
     -------
@@ -288,7 +289,10 @@ def _linear_outputs(explicit: Formulas, entries: Entries, groups: Groups) -> Lin
 
 
 def _with_sums(formulas: Formulas, linear: Linear) -> Formulas:
-    """Return formulas in which each output of ``linear`` is a sum of inputs times derivatives: ``x*f_x + y*f_y``."""
+    """Return formulas in which an output f that is linear in x and y is ``x*f_by_x + y*f_by_y``, from its derivatives.
+
+    ``linear`` lists these outputs, as :func:`_linear_outputs` returns them.
+    """
     outputs, named = dict(formulas.outputs), list(formulas.named)
     # the derivatives are outputs anyway, so the sum costs few operations
     for output, terms in linear.items():

@@ -13,7 +13,7 @@ from symrot.formula.program import Program
 __all__ = ["UNNAMED", "function_in", "load_numpy_kernel"]
 
 UNNAMED = Description("kernel of a scene", "all states", "derivations/euler_equations.md", "symrot emit --target numpy")
-"""The head comment of a kernel that is loaded at once, so that nobody reads its text."""
+"""Texts, without the name of a scene, for the head comment of a kernel that is only imported and that nobody reads."""
 
 
 def load_numpy_kernel(program: Program) -> Callable[..., Any]:

@@ -119,7 +119,8 @@ def rates_jacobian_program(
 ) -> Lowered:
     """Return the program, with the fewest operations, that computes the rates and their derivatives.
 
-    ``chained`` and ``arguments`` are the result of :func:`rate_derivatives`.
+    ``chained`` (the formulas of the rates and of their derivatives, by the chain rule) and ``arguments`` (the output
+    arrays) are the result of :func:`rate_derivatives`.
     """
     rates, states = _rates(equations), _state_argument(equations)
     held = {str(s) for _, formula in (*rates.outputs, *rates.named) for s in formula.free_symbols}
@@ -135,9 +136,10 @@ def rates_jacobian_program(
 
 
 def _variables(equations: Equations, name: str) -> tuple[Symbol, ...]:
-    """Return the symbols that ``name`` stands for: the states of ``"y"``, ``"omega"``, ``"q"`` or ``"angles"``, or one.
+    """Return the symbols that ``name`` stands for: one state, t or constant, or the states of a group.
 
-    Raise InputError if the equations contain no such symbol.
+    The groups are ``"y"`` (all states), ``"omega"``, ``"q"`` and ``"angles"``. Raise InputError if the equations
+    contain no such symbol.
     """
     families = {"omega": symbols.omega_b, "q": symbols.quaternion, "angles": symbols.angles}
     states = [state for state in equations.states if name == "y" or state in families.get(name, ())]
@@ -250,8 +252,11 @@ def scene_description(
     jacobian: Sequence[str] = (),
     exceptions: str = "",
 ) -> Description:
-    """Return the texts in the head comment of the file that is emitted for a scene's kernel."""
-    # jacobian: names of the states and constants by which the kernel computes derivatives; exceptions: see corner_note
+    """Return the texts for the head comment of a scene's kernel, a file in the language ``target``.
+
+    ``bounds`` are pairs (heading, text) about rounding errors, used for C; ``jacobian`` are the states and constants by
+    which the kernel computes derivatives; ``exceptions`` is a text from :func:`corner_note`.
+    """
     derivatives = f"; with their derivatives by {', '.join(jacobian)}, row by row" if jacobian else ""
     option = f" --jacobian {','.join(jacobian)}" if jacobian else ""
     return Description(
@@ -259,6 +264,5 @@ def scene_description(
         domain=f"all states of finite size{exceptions}; a quaternion is of unit norm, and its rate keeps the norm",
         derivation="derivations/euler_equations.md, derivations/quaternion_rates.md",
         command=f"symrot emit {name}{option} --target {target}",
-        # pairs (heading, text) about rounding errors
         contract=(*bounds, *CONTRACT) if target == "c" else (),
     )

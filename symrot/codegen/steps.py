@@ -65,7 +65,7 @@ class TaylorSeries:
 
 @dataclass(frozen=True)
 class WithDerivatives:
-    """The method ``plain``, whose step also computes the exact derivatives of the new state by the inputs ``by``."""
+    """A numerical method, ``plain``, whose step also computes exact derivatives of the new state by inputs, ``by``."""
 
     plain: RungeKutta | TaylorSeries
     # "x" (all states), "omega", "q", "p" (all parameters), "dt", "t", one state or one parameter
@@ -73,12 +73,12 @@ class WithDerivatives:
 
     @property
     def name(self) -> str:
-        """The name of the method ``plain``, such as ``rk4``."""
+        """The name of the numerical method in ``plain``, such as ``rk4``."""
         return self.plain.name
 
     @property
     def order(self) -> int:
-        """The order of accuracy of the method ``plain``, such as 4 for ``rk4``."""
+        """The order of accuracy of the numerical method in ``plain``, such as 4 for ``rk4``."""
         return self.plain.order
 
     @property
@@ -102,8 +102,8 @@ def stepped(
 ) -> list[Any]:  # fmt: skip
     """Return the components of the state after one step as a list, computed with any kind of number.
 
-    For a :class:`WithDerivatives`, the derivatives of the new state follow: for each entry of ``method.by``, the matrix
-    of the derivatives by the inputs that it names, row by row, one row for each state.
+    For a :class:`WithDerivatives`, the derivatives of the new state follow: for each entry of ``method.by``, such as
+    "omega", the matrix of the derivatives by its inputs, row by row, one row for each state.
 
     Parameters
     ----------
@@ -115,8 +115,10 @@ def stepped(
         Values of t, of the states and of the parameters, by name.
     dt : number
         Size of the step, s; may be negative.
-    functions, number
-        As for :meth:`symrot.formula.program.Program.evaluate`.
+    functions : mapping
+        The functions of this kind of number by name, such as ``"sin"``.
+    number : callable
+        Converts a Fraction to this kind of number.
     """
     states = [name for name, *_ in rates.signature.argument("y").components]
     if isinstance(method, WithDerivatives):

@@ -74,16 +74,20 @@ class Enclosed:
 
 
 def _made(high: Floats, low: Floats, error: Floats, size: Floats) -> Enclosed:
-    """Return the numbers ``high + low``; the error is infinite where ``size`` is neither 0 nor between LEAST and MOST.
+    """Return the numbers ``high + low`` with ``error``, a bound of their errors.
 
-    ``size`` is the size of the operands or of the result; outside these limits, the bounds of the errors do not hold.
+    The bound becomes infinite where ``size`` (of the operands of a sum, or of a product) is neither 0 nor between LEAST
+    and MOST: ``error`` is not a bound there.
     """
     safe = (size == 0) | (size > LEAST) & (size < MOST)
     return Enclosed(high, low, np.where(safe, error, np.inf))
 
 
 def _made_of_factors(high: Floats, low: Floats, error: Floats, zero: NDArray[np.bool_]) -> Enclosed:
-    """Return a product or quotient; where ``zero`` is true, it is exactly 0, and a 0 elsewhere is an underflow."""
+    """Return a product or quotient ``high + low`` with a bound of its error: 0 where ``zero`` is true, else ``error``.
+
+    A result is exactly 0 where ``zero`` is true; any other 0 is an underflow and gets an infinite bound.
+    """
     size = np.abs(high)
     return _made(high, low, np.where(zero, 0.0, error), np.where(zero, 0.0, np.where(size == 0, np.inf, size)))
 

@@ -266,16 +266,16 @@ class Ensemble(MotionSamples):
         Parameters
         ----------
         quantity : str
-            As for :meth:`mean`.
+            A name that ``output.quantities`` of a scene accepts, such as ``"omega"``; attitudes are not accepted.
         q : float or array
             Percentages from 0 to 100, such as ``[5, 50, 95]``. For a single number, the result has shape (m, ...).
         omit_stopped : bool
-            As for :meth:`mean`.
+            Whether to skip a motion at times that it did not reach; if False, percentiles are NaN at these times.
 
         Raises
         ------
         InputError
-            As for :meth:`mean`, or if a percentage is not from 0 to 100.
+            If a percentage is not from 0 to 100, and for a quantity or sample times that :meth:`mean` refuses.
 
         Examples
         --------
@@ -359,8 +359,9 @@ def propagate_ensemble(
         Number of threads that compute motions.
     sensitivities : sequence of str, optional
         Initial values and constants by which all motions are differentiated: ``"omega"``, ``"attitude"``, and numbers
-        of the scene such as ``"weight"``, as for :func:`symrot.propagate`. The derivatives are ``sensitivities`` of the
-        ensemble; if they stop early, so does the motion. For every method they are computed by Taylor series.
+        of the scene such as ``"weight"``, as for :func:`symrot.propagate`. The derivatives are in the attribute
+        ``sensitivities`` of the ensemble and are computed by Taylor series for every method. If this computation stops
+        before the last time for a motion, the motion stops there too.
 
     Returns
     -------

@@ -57,8 +57,8 @@ def forms_of(variation: Variation) -> list[tuple[Kind, Rows]]:
 def _patterns(variation: Variation) -> list[tuple[Hashable, Rows]]:
     """Return trajectories grouped by which numbers are zero or equal, as pairs (pattern, indices of trajectories).
 
-    All trajectories with one pattern, a hashable key, have the same closed form. If no key can tell this, each
-    trajectory is a group of its own, with None instead of a pattern.
+    All trajectories with one pattern, a hashable key, have the same closed form. If sums of constants may be zero too,
+    or if too many constants vary, each trajectory is a group of its own, with None instead of a pattern.
     """
     columns, n = variation.columns, len(variation)
     code = (variation.omega != 0) @ np.array([1, 2, 4])
@@ -121,7 +121,8 @@ class Solved(NamedTuple):
 def choose(variation: Variation, times: Floats, start: float, faster: bool) -> list[Solved]:
     """Return the trajectories of an ensemble to compute in closed form, in groups with equal form.
 
-    All other trajectories are integrated in steps; if ``faster``, also those for which steps are the faster way.
+    All other trajectories are integrated in steps. With ``faster``, trajectories that have a closed form but are
+    integrated faster are among them.
     """
     solved: list[Solved] = []
     for kind, rows in forms_of(variation):
@@ -241,7 +242,7 @@ Usual = NDArray[np.bool_] | bool
 
 
 class _Part(NamedTuple):
-    """The trajectories that one call of C computes: those with the same closed form about the same body axis."""
+    """Trajectories of an ensemble with the same closed form about the same body axis, which one call of C computes."""
 
     variation: Variation
     axis: int | None
@@ -249,7 +250,7 @@ class _Part(NamedTuple):
     omega: Floats  # (n, 3)
 
     def of(self, chosen: NDArray[np.bool_]) -> "_Part":
-        """Return the trajectories k of this object for which ``chosen[k]`` is true, as a new object."""
+        """Return a :class:`_Part` with only the trajectories k for which ``chosen[k]`` is true."""
         return self._replace(rows=self.rows[chosen], omega=self.omega[chosen])
 
     @property
@@ -446,7 +447,8 @@ BATCHES: dict[str, Callable[[_Part], tuple["Batch | None", Usual]]] = {
     "axial": _driven,
     "spin_up": _spin_up,
 }
-"""Library of a closed form -> function that prepares some trajectories (a :class:`_Part`) for it.
+"""Name of a closed form's C library -> function that prepares some trajectories (a :class:`_Part`) for it.
 
-The function returns (batch, usual): the constants of the trajectories as arrays, or None if they must be computed one
-by one, and whether the arrays give the right bits, for each trajectory or for all."""
+The function returns (batch, usual). ``batch`` are the constants of the trajectories as arrays, or None if they must be
+computed one by one. ``usual`` tells, for each trajectory or for all, whether the arrays give the same bits as the
+computation of a single motion."""

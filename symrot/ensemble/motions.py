@@ -98,7 +98,10 @@ def follow(problem: Problem, method: str) -> Followed:
 
 
 def _together(parts: Sequence[Followed], groups: Sequence[Integers]) -> Followed:
-    """Return all results in the order of the ensemble; ``parts[k]`` has those of the motions ``groups[k]``."""
+    """Return the results of all motions in the order of the ensemble; ``parts[k]`` are results for ``groups[k]``.
+
+    ``groups[k]`` are indices of motions.
+    """
     order = np.argsort(np.concatenate(groups), kind="stable")
 
     def joined(arrays: Sequence[Any]) -> Any:
@@ -251,11 +254,12 @@ class _Stepped:
         return times - self.epoch if self.epoch else times
 
     def clock(self, k: int, make: Callable[[Plan, SceneKernel], Any] = motion_library) -> Any:
-        """Return a function from an epoch to the rates and parameters of motion k with time counted from the epoch.
+        """Return a function that takes an epoch and returns (rates of motion k, values of their parameters).
 
-        None if the rates do not depend on time.
+        The rates are what ``make`` returns, a compiled library or a Python function, and take the time since the epoch:
+        a stepper calls the function to reset its clock to 0. Return None if the rates do not depend on time.
         """
-        # the epoch is the time, s, at which a stepper resets its clock to 0; see symrot.propagation.time_shift.clock
+        # see symrot.propagation.time_shift.clock
         if not self.kernel.rates.uses("t"):
             return None
 

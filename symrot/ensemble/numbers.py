@@ -83,7 +83,7 @@ class Numbers:
         variable : str
             The name of the variable, for messages.
         epoch : float
-            As for :meth:`values_of`.
+            The scene's time, s, at which the time t of the kernel is 0.
 
         Raises
         ------
@@ -153,8 +153,8 @@ def _slope(
 ) -> Fraction:
     """Return the derivative of the formula ``node`` by a variable, for one trajectory.
 
-    ``fixed`` are the constants that all trajectories share, ``one`` those of this trajectory, and ``moved`` the
-    derivatives of constants by the variable: ``A*B`` with A = 2, B = 3 and ``moved = {"A": 1}`` gives 3.
+    ``fixed`` are the constants that all trajectories share, ``one`` the other constants of this trajectory, and
+    ``moved`` the derivatives of constants by the variable: ``A*B`` with A = 2, B = 3 and ``moved = {"A": 1}`` gives 3.
     """
     constants = {**fixed, **one}
     ratios = [abs(constants[name] / slope) for name, slope in moved.items() if slope and name in constants]

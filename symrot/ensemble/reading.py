@@ -179,7 +179,8 @@ def _array(values: ArrayLike, shape: tuple[int, ...], name: str, unit: str) -> F
 def constant_places(scene: Scene) -> dict[str, Place]:
     """Return a map from each constant that may vary, such as ``weight``, to its place in the scene.
 
-    ``torque2_stiffness`` has the place ``(1, "stiffness", None)``.
+    ``torque2_stiffness`` has the place ``(1, "stiffness", None)``: the torque with index 1, its field, and None because
+    the field is a single number.
     """
     places = {name: Place(-1, "inertia", None) for name in PLACES}
     for index, torque in enumerate(general_structure(scene).torques):

@@ -34,7 +34,7 @@ GENERAL_START = Initial(  # initial state without special values, so that no rul
     (Fraction(1, 5), Fraction(2, 5), Fraction(4, 5), Fraction(2, 5)),
 )
 BY_ZEROS = {"gravity", "rotor", "constant_body", "damping"}
-"""Kinds of torques for whose numbers the choice of the equations depends only on which numbers are zero."""
+"""Kinds of torques whose numbers affect the choice of the equations only by being zero or not."""
 
 DISTINCT = (Fraction(4), Fraction(5), Fraction(6))  # different moments that satisfy the triangle inequalities
 

@@ -51,9 +51,10 @@ def proof_by_congruence(
 def _equal_pairs(
     names: Sequence[Expr], hypotheses: Sequence[Expr], domain: Sequence[Expr]
 ) -> Iterator[tuple[Expr, Expr, tuple[FormulaRing, ...]]]:
-    """Yield equal pairs as (f, h, rings): f is in ``names``, and h is g or ``pi/2 - g`` for another g in ``names``.
+    """Yield (f, h, rings) for equal expressions f and h among ``names``, which are inverse functions and logarithms.
 
-    ``rings`` are the polynomial rings in which ``f = h`` is proven.
+    f is one of them, and h is another one, g, or ``pi/2 - g``. ``rings`` are all polynomial rings that the proof of
+    ``f = h`` uses.
     """
     for first, second in combinations(names, 2):
         for other in (first, pi / 2 - first):

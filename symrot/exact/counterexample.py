@@ -50,7 +50,9 @@ MOST_NESTED = 2
 
 _INVERSE = (asin, acos, atan, atan2)
 _TRIANGLES = [Rational(n, d) for n, d in ((3, 5), (-4, 5), (3, 4), (-4, 3), (1, 1), (-1, 1), (2, 1), (-2, 1), (1, 2))]
-"""Values at which sines and cosines of most inverse functions are rational."""
+"""Values tried for the symbols of formulas with asin, acos, atan, ..: many sines and cosines are then rational.
+
+For example, ``cos(asin(3/5))`` is 4/5, as in a right triangle with the sides 3, 4 and 5."""
 
 _CIRCLE = tuple(tuple(map(Fraction, point.split())) for point in ("0 1", "1 0", "0 -1", "-1 0", "3/5 4/5", "4/5 3/5"))
 """Pairs (sine, cosine): the quarter turns, and the acute angles of the triangle with the sides 3, 4 and 5."""

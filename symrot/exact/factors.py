@@ -25,8 +25,9 @@ MOST_UNKNOWNS = 10
 """The largest number of unknowns of a polynomial that SymPy is asked to factor."""
 
 MOST_BITS = 1000
-"""The largest number of bits of a coefficient, for SymPy to factor; :func:`factor_list` allows 100 times as many if the
-polynomial has one unknown."""
+"""The largest number of bits of a coefficient of a polynomial that SymPy is asked to factor.
+
+For polynomials in one unknown, :func:`factor_list` allows 100 times as many."""
 
 
 def factor_list(poly: PolyElement) -> tuple[Any, list[tuple[PolyElement, int]]]:
@@ -47,7 +48,10 @@ def factor_list(poly: PolyElement) -> tuple[Any, list[tuple[PolyElement, int]]]:
 
 
 def _split(poly: PolyElement) -> list[tuple[PolyElement, int]]:
-    """Return pairs (factor, power) of a primitive polynomial that is linear in an unknown; any other is left whole."""
+    """Return the factors of a primitive polynomial that has degree 1 in some unknown, as pairs (factor, power).
+
+    A polynomial without such an unknown is returned whole, as its own single factor.
+    """
     linear = [place for place, degree in enumerate(poly.degrees()) if degree == 1]
     if not linear:
         return [(poly, 1)]

@@ -27,7 +27,7 @@ class NoValue(ArithmeticError):
 
 
 def _reciprocal(function: Any) -> Any:
-    """Return the function ``1/f`` of a function f, such as the secant of the cosine."""
+    """Return the function ``1/f`` for a function f: the secant if f is the cosine."""
     return lambda x: 1 / function(x)
 
 

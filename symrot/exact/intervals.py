@@ -43,8 +43,15 @@ class Undefined(ValueError):
 
 def arc_tangent(y: Any, x: Any) -> Any:
     """Return an interval that contains atan2(y, x) for all numbers in the intervals ``y`` and ``x``, not both zero."""
+    if x.b < 0 and y.a < 0 <= y.b:  # atan2 jumps at y = 0; for y.b = 0, mpmath returns an interval from pi to -pi
+        return iv.mpf([-1, 1]) * iv.pi
     # mpmath rounds an end to four more bits and then to the precision, which may move it inward
     return iv.atan2(y, x) * (1 + iv.mpf(2) ** (1 - iv.prec) * iv.mpf([-1, 1]))
+
+
+def _exp(x: Any) -> Any:
+    # mpmath may leave out the last term of 1 + x + x^2/2 where the rest is a number of its precision
+    return iv.exp(x) if x.a == x.b == 0 else iv.exp(x) * (1 + iv.mpf(2) ** (1 - iv.prec) * iv.mpf([-1, 1]))
 
 
 def _asin(x: Any) -> Any:
@@ -73,7 +80,8 @@ def _log(x: Any) -> Any:
     _refuse(x.b <= 0)
     if not x.a > 0:
         raise ValueError("expected a positive number in a logarithm")
-    return iv.log(x)
+    # as in _exp: mpmath may leave out the last term
+    return iv.log(x) if x.a == x.b == 1 else iv.log(x) * (1 + iv.mpf(2) ** (1 - iv.prec) * iv.mpf([-1, 1]))
 
 
 def _atan2(y: Any, x: Any) -> Any:
@@ -112,12 +120,12 @@ INTERVAL = {
     sympy.acos: _acos,
     sympy.atan: lambda x: arc_tangent(x, iv.mpf(1)),
     sympy.atan2: _atan2,
-    sympy.exp: iv.exp,
+    sympy.exp: _exp,
     sympy.log: _log,
-    sympy.sinh: lambda x: (iv.exp(x) - iv.exp(-x)) / 2,
-    sympy.cosh: lambda x: (iv.exp(x) + iv.exp(-x)) / 2,
-    sympy.tanh: lambda x: 1 - 2 / (iv.exp(2 * x) + 1),
-    sympy.coth: lambda x: 1 + _over(2, iv.exp(2 * x) - 1),
+    sympy.sinh: lambda x: (_exp(x) - _exp(-x)) / 2,
+    sympy.cosh: lambda x: (_exp(x) + _exp(-x)) / 2,
+    sympy.tanh: lambda x: 1 - 2 / (_exp(2 * x) + 1),
+    sympy.coth: lambda x: 1 + _over(2, _exp(2 * x) - 1),
     sympy.asinh: lambda x: iv.log(x + iv.sqrt(x * x + 1)),
     sympy.acosh: lambda x: iv.log(x + _root(x - 1) * iv.sqrt(x + 1)),
     sympy.atanh: lambda x: (_log(1 + x) - _log(1 - x)) / 2,
@@ -214,7 +222,7 @@ def _power(base: Value, exponent: Expr, values: Mapping[Expr, Any], known: dict[
         return _whole_power(_root(held), int(exponent.p))
     if not held.a > 0:
         raise ValueError("expected a positive number under a fractional power")
-    return iv.exp(_bounded(as_interval(_value(exponent, values, known)) * iv.log(held)))
+    return _exp(_bounded(as_interval(_value(exponent, values, known)) * _log(held)))
 
 
 def _whole_power(base: Value, power: int) -> Value:

@@ -217,9 +217,9 @@ def _ends_of_argument(inner: Expr, low: Expr, high: Expr) -> tuple[Expr, ...] | 
 
 
 def _principal_direction(ring: FormulaRing, leaf: Expr, angle: Expr) -> PrincipalValueProof | None:
-    """Return a proof that ``atan2(y, x)``, the ``leaf``, is the ``angle`` w under conditions; None without a proof.
+    """Return a proof, with its conditions, that ``leaf``, an ``atan2(y, x)``, equals ``angle``, w; None if not found.
 
-    The conditions: -pi < w <= pi, and x cos w + y sin w > 0, or those of :func:`_principal_direction_of_root`.
+    The conditions are -pi < w <= pi and x cos w + y sin w > 0, or those of :func:`_principal_direction_of_root`.
     """
     y, x = leaf.args
     left, right = y * cos(angle), x * sin(angle)
@@ -238,7 +238,10 @@ def _principal_direction(ring: FormulaRing, leaf: Expr, angle: Expr) -> Principa
 
 
 def _principal_direction_of_root(ring: FormulaRing, leaf: Expr, angle: Expr) -> PrincipalValueProof | None:
-    """Return a proof that ``leaf``, an ``atan2(y, x)``, equals ``angle`` under conditions; None without one."""
+    """Return a proof, with its conditions, that ``leaf``, an ``atan2(y, x)``, equals ``angle``.
+
+    Return None if no proof is found.
+    """
     y, x = leaf.args
     # y or x must be a root or an absolute value.
     # y = sqrt(P): if P = r^2 sin(w)^2 for r = x/cos(w), the value is w for w in [0, pi] and positive r; for x = sqrt(P)

@@ -21,7 +21,9 @@ __all__ = ["proof_by_arguments", "with_plain_arguments"]
 FUNCTIONS = (*TRIGONOMETRIC, *REWRITTEN, *INVERSE, sympy.exp, sympy.log, sympy.Abs)
 
 MOST_LEVELS = 4
-"""Largest number of levels of nested functions, from the inside out, whose arguments are put in normal form."""
+"""Number of levels of nested functions, counted from the innermost, at which arguments are put in normal form.
+
+In ``sin(cos(x))``, the cosine is the first level and the sine the second."""
 
 MOST_COMPARED = 8
 """Largest number of arguments of functions, such as u in sin(u), of which all pairs are tested for equality."""

@@ -45,7 +45,14 @@ from symrot.formula.polynomial import Polynomial, constant, exact_quotient, gene
 from symrot.formula.tree import evaluate, parse
 from symrot.inertia import tensor
 from symrot.inertia.bodies import MassProperties, compose
-from symrot.inertia.integration import LARGEST_DEGREE, Domain, domain, moments_per_measure
+from symrot.inertia.integration import (
+    LARGEST_DEGREE,
+    Domain,
+    domain,
+    moments_per_measure,
+    require_not_negative,
+    shape_points,
+)
 from symrot.inertia.shapes import SHAPES, Dimension, Shape, check_names, find_shape, scalar_names
 
 __all__ = ["Integral", "Solid", "closed_forms_text", "solid"]
@@ -357,8 +364,8 @@ def solid(name: str, *, mass: Any = None, density: Any = None, **dimensions: Any
     ------
     InputError
         If a shape or dimension is unknown, a length, mass or constant density is not positive, a density is no
-        polynomial of degree up to 12 or has no positive integral, or both a mass and a density are passed. A polynomial
-        that is negative in a part of the shape is accepted.
+        polynomial of degree up to 12, has no positive integral, or, with numbers for all dimensions, is negative at a
+        test point of the shape, or if both a mass and a density are passed.
 
     Notes
     -----
@@ -420,6 +427,9 @@ def _weighted(shape: Shape, values: Mapping[str, Expr], profile: Poly, measure: 
     mass, center, specific = _properties(region, {**values, **coefficients}, density)
     if mass.is_nonpositive:
         raise InputError(f"expected a density with a positive mass, got {profile.as_expr()} with {mass} kg")
+    if len(known) == len(values) and not profile.free_symbols_in_domain:
+        density_text = str(profile.as_expr())
+        require_not_negative(parse(density_text), shape_points(shape, known), density_text)
     inertia = _tidied(tensor.scale(mass, specific))
     return Solid(shape.name, values, measure, profile.as_expr(), factor(mass), center.applyfunc(factor), inertia)
 

@@ -74,9 +74,9 @@ def general_structure(scene: Scene, switched: bool = False) -> Structure:
 
 
 def _general_torque(number: int, torque: Torque, known: set[str], switched: bool) -> TorqueStructure:
-    """Return what the most general equations assume about torque ``number``: each constant may have any value.
+    """Return the structure of a torque for the most general equations, in which each constant may have any value.
 
-    The names of the constants are added to ``known``.
+    ``number`` is the number of the torque in the scene, from 1. The names of its constants are added to ``known``.
     """
     if torque.formulas:
         general = _formula_torque(torque, switched)
@@ -90,10 +90,10 @@ def _general_torque(number: int, torque: Torque, known: set[str], switched: bool
 
 
 def _formula_torque(torque: Torque, switched: bool) -> FormulaTorque:
-    """Return what the equations assume about a torque given by formulas: each constant may have any value.
+    """Return the structure of a torque given by formulas, in which each constant may have any value.
 
-    The constants have the same names as in the scene. If ``switched``, functions that jump, such as sign, become
-    further constants (modes).
+    The constants have the same names as in the scene. If ``switched``, functions with a jump or kink, such as sign and
+    abs, become further constants (modes).
     """
     formulas, parameters, frame = torque.formulas, tuple(torque.values), torque.frame
     if not (switched and any(has_switches(expression.parse(text, switching=True)) for text in formulas)):

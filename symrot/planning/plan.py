@@ -31,7 +31,9 @@ __all__ = ["START_CONSTANTS", "STATES", "Plan", "make_plan", "structure_key"]
 
 ZERO, FREE = Pattern.ZERO, Pattern.FREE  # a global name is looked up faster than a member of an Enum
 START_CONSTANTS = frozenset({f"omega_{i}" for i in (1, 2, 3)} | {f"initial_q{i}" for i in range(4)})
-"""Names of constants in equations that are numbers of the initial state; all other constants are of body or torques."""
+"""Names of the constants in equations that are components of the initial state.
+
+All other constants belong to the body or the torques."""
 STATES = (*switches.STATES, "theta")
 
 

@@ -190,7 +190,7 @@ def _only_along(vector: tuple[Pattern, ...], axis: int) -> bool:
 def _torque_along(torque: TorqueStructure, axis: int, scene: Scene, scene_torque: Torque) -> bool:
     """Return whether a torque is parallel to body axis ``axis`` while the body rotates only about this axis.
 
-    Return False also for formulas and for other kinds of torque, whose direction is not examined.
+    Return False also for torques whose direction is not examined: those given by formulas, and a gravity gradient.
     """
     if isinstance(torque, FormulaTorque):
         return False
@@ -311,7 +311,8 @@ def _constant(scene: Scene, *axes: int) -> tuple[Pattern | None, Pattern | None,
 def _no_moment_about(torque: TorqueStructure, axis: int) -> bool:
     """Return whether a torque is known to have no component along the symmetry axis ``axis``, 0 to 2, at any time.
 
-    The spin about this axis is then constant. A formula counts only if it is written as ``0`` or ``0.0``.
+    The spin about this axis is then constant. For a torque given by formulas, the result is True only if the formulas
+    are body components and the formula along the axis is written as ``0`` or ``0.0``.
     """
     if isinstance(torque, FormulaTorque):
         return torque.frame == "body" and torque.formulas[axis].strip() in ("0", "0.0")

@@ -105,7 +105,10 @@ class SceneKernel:
 
     @cached_property
     def rate_parameters(self) -> Parameters:
-        """The parameters of the rates in C order, as pairs such as ``("p0", (B - C)/A)``: name and formula."""
+        """The parameters of :attr:`rates`, in the order of the array that the C function takes.
+
+        Each is a pair (name, formula in the scene's constants), such as ``("p0", (B - C)/A)``.
+        """
         return _loaded(self.record["rate_parameters"])
 
     @cached_property

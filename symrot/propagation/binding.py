@@ -1,8 +1,8 @@
 """Numerical values of the parameters of kernels, for many initial states of one scene.
 
 A kernel is the generated code for the rates (time derivatives) of the states or for the output quantities. Its
-parameters are formulas such as ``(B - C)/A``. For another state, only formulas that contain a number of the initial
-state are evaluated again.
+parameters are formulas such as ``(B - C)/A``. For another initial state, only the formulas that contain a component of
+the initial state, such as ``omega_1``, are evaluated again.
 """
 
 from collections.abc import Callable, Mapping
@@ -35,7 +35,7 @@ def two_doubles(top: int, bottom: int) -> tuple[float, ...]:
 class Binding:
     """Function that takes a plan (the equations of a scene) and returns the values of a kernel's parameters.
 
-    The plan may have any initial state: only formulas that contain numbers of the initial state are evaluated again.
+    The plan may have any initial state: only formulas that contain components of the initial state are evaluated again.
     The values are doubles.
 
     Parameters
@@ -77,9 +77,10 @@ class Binding:
         ]
 
     def __call__(self, plan: Plan) -> list[float]:
-        """Return the parameters for ``plan``, which may differ from the plan passed first in its initial state only.
+        """Return the values of the parameters, in order, for the initial state of ``plan``.
 
-        The doubles follow in the order of the parameters, as many for each as the function ``rounded`` returns.
+        In all else, ``plan`` must agree with the plan given to the constructor. Each parameter has as many doubles as
+        the constructor's argument ``rounded`` returns: one by default, two for output quantities.
         """
         numbers = self._numbers.copy()
         if self._moving:
@@ -91,7 +92,7 @@ class Binding:
 
 
 class _Moving:
-    """A formula in numbers of the initial state, such as ``3*omega_1**2``, to be evaluated for many initial states."""
+    """A formula that contains components of the initial state, such as ``3*omega_1**2``, for many initial states."""
 
     def __init__(self, formula: Node) -> None:
         # a monomial in one name is evaluated with integers, which is faster than with Fractions

@@ -323,11 +323,11 @@ class ExternalSetup:
 def external_setup(
     plan: Plan, tolerance: float, source: TorqueSource, in_space: bool, switching: Sequence[float], max_step: float
 ) -> ExternalSetup:
-    """Compile kernel, torque and stepper into one library, and return the setup of all motions with this torque.
+    """Compile kernel, torque and stepper into one library; return the setup that all motions with this torque share.
 
-    ``in_space``: the torque has space components.
+    ``in_space``: the torque has space components; ``switching``: times, s, at which the torque jumps; ``max_step``: the
+    longest step, s.
     """
-    # max_step: the longest step, s; switching: times, s, at which the torque jumps
     plan = replace(plan, structure=replace(plan.structure.unreduced(), attitude=True))
     scene_alone = scene_kernel(plan)
     own = len(scene_alone.rate_parameters)
@@ -402,7 +402,10 @@ class ExternallyDrivenMotion(RestartableMotion, SteppedInC):
             raise failure from failure.__cause__
 
     def follow(self, times: Floats, in_order: bool = False) -> tuple[Floats, Stats]:
-        """Return the N states at n ``times``, s, shape (n, N), and the cost of the motion."""
+        """Return the N states at n ``times``, s, shape (n, N), and the cost in steps and evaluations.
+
+        ``in_order`` has no effect: the times are sorted in any case.
+        """
         low, high = (float(times.min()), float(times.max())) if len(times) else (self.start, self.start)
         # sample() sorts the times, so that in_order is not used
         return self._guarded(low, high, lambda: self.stepping.restarted().sample(times))

@@ -79,7 +79,9 @@ class ShiftedParameters:
         self._lines = [_line(node) for node in self._formulas]
 
     def parameters(self, epoch: float | Fraction) -> list[float]:
-        """Return the values of all formulas for one value of the epoch, ``start`` + ``epoch``, s.
+        """Return the values of all formulas, in order, for one epoch; ``epoch`` is its time on the motion's clock, s.
+
+        The time of the scene is ``start`` + ``epoch``, where ``start`` is an argument of the constructor.
 
         Each value is computed exactly, or to many more digits than a double has, and rounded once; it is NaN where the
         formula has no real value. Raise IntegrationStopped if a value exceeds the range of doubles.
@@ -139,8 +141,9 @@ def clock(
 ) -> Callable[[float], tuple[Any, list[float]]]:
     """Return a function that takes an epoch, s after ``start``, and returns rates and the values of their parameters.
 
-    The rates take the time since the epoch: a stepper that restarts its clock at a late time calls the function. They
-    are what ``make`` returns, a compiled library or a Python function, and are the same for all epochs.
+    A stepper calls the function when it restarts its clock at a late time: the rates take the time since the epoch. The
+    rates, a compiled library or a Python function, are made once, by ``make`` from the plan and kernel that ``moving``
+    returns. For another epoch only the values of the parameters differ.
     """
 
     # moving(), a plan and kernel as time_shifted returns them, is called on first use; make() turns them into the

@@ -44,9 +44,9 @@ class Invariant(NamedTuple):
     values : array, shape (n,)
         Values of the quantity at the sample times.
     scale : float
-        The number by which the drift is divided, a largest magnitude along the trajectory: of the spin; of an energy or
-        the kinetic energy, whichever is larger; of the whole vector for a component of the angular momentum. For the
-        norm of the quaternion, and without samples, the scale is 1.
+        The number by which the drift is divided: the largest magnitude of the quantity along the trajectory. For a
+        component of the angular momentum, it is the largest magnitude of the whole vector; for an energy, at least the
+        largest kinetic energy. For the norm of the quaternion, and without samples, the scale is 1.
     drift : float
         Largest change since the start, divided by ``scale`` unless that is 0.
 
@@ -348,7 +348,7 @@ class Trajectory(MotionSamples):
         Raises
         ------
         InputError
-            If the times are not finite, or if the argument ``torque`` acts.
+            If the times are not finite, or if a torque acts that was passed to :func:`symrot.propagate` as ``torque``.
         PropagationError
             If the motion cannot be followed to both times, or if it has no derivatives beyond a switch of a torque.
 

@@ -1,10 +1,12 @@
 """The machine that runs C in Python obeys the rules of C, and refuses faulty texts."""
 
+from decimal import Decimal
 from fractions import Fraction
 
 import pytest
 
 from symrot.certificates.c_machine.machine import Machine
+from symrot.certificates.exact_step.law import _Slope
 from symrot.errors import CertificateError
 
 
@@ -54,3 +56,13 @@ def test_a_variable_that_keeps_its_value_is_refused():
     with pytest.raises(CertificateError, match="from call to call"):
         Machine(text, float, {})
     assert Machine(text.replace("static", "static const").replace("calls += 1;", ""), float, {}).call("f") == 0
+
+
+@pytest.mark.parametrize(("x", "result"), [(2, 1), (3, 2)])
+def test_numbers_with_a_derivative_are_equal_if_their_values_are(x, result):
+    machine = Machine(
+        "int f(double x) { return (x == 2.0) + 2*(2.0 != x); }",
+        lambda value: Decimal(value.numerator) / value.denominator,
+        {},
+    )
+    assert machine.call("f", _Slope(Decimal(x), Decimal(1))) == result

@@ -317,6 +317,16 @@ def test_a_forged_header_is_refused(forgery, old, new):
     assert files.refusal().startswith("heavy_top.h holds more than prototypes: expected")
 
 
+def test_a_series_that_differs_from_its_function_for_negative_numbers_is_refused(forgery):
+    files = forgery(VECTOR)
+    (function,) = (each for each in files.data["spec"]["functions"] if each[0] == "tangent_gap")
+    function[1] += " + Abs(x) - x"
+    text = re.sub(r"(/x - (?:symrot_)?cos(f?)\(x\)\)/x/x)", r"\1 + fabs\2(x) - x", files.read(".c"))
+    files.write(".c", text)
+    files.seal()
+    assert "series of 'tangent_gap'" in files.refusal()
+
+
 def test_the_program_ends_with_one_line_and_exit_code_one(forgery, capsys):
     files = forgery(TOP)
     files.seal()

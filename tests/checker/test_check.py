@@ -231,6 +231,8 @@ def test_several_equations_are_true_only_where_each_of_them_is_defined():
     verdict = symrot.check("sqrt(x^2) = x; sqrt(y^2)/z = y/z")
     assert verdict.verdict == "conditional"
     assert verdict.conditions == ("x >= 0 and y >= 0", "z != 0") and verdict.requires == ("x >= 0 and y >= 0",)
+    alternatives = symrot.check("atan2(y, x) == -atan2(-y, x); sqrt(z^2) = z")
+    assert alternatives.requires == ("(y != 0 or x > 0) and z >= 0",)  # without brackets it would hold for z = -1
 
 
 def test_zeros_with_irrational_coefficients_end_in_a_verdict():

@@ -37,7 +37,7 @@ from symrot.errors import InputError
 from symrot.exact import is_zero, normal_form
 from symrot.exact.angles import cyclotomic
 from symrot.exact.decide import decide
-from symrot.exact.intervals import arc_tangent
+from symrot.exact.intervals import arc_tangent, is_nonnegative_at
 
 x, y = symbols("x y", real=True)
 p = symbols("p", positive=True)
@@ -158,6 +158,21 @@ def test_on_the_cut_of_atan2_nothing_is_claimed():
     verdict = symrot.check("atan2(y, x) == 2*atan2(y, x + sqrt(x**2 + y**2))")
     assert verdict.verdict == "true"
     assert any("sqrt(x**2 + y**2)" in condition and "!= 0" in condition for condition in verdict.conditions)
+
+
+@pytest.mark.parametrize("power", [80, 100, 150])
+def test_intervals_of_exponentials_and_logarithms_contain_the_value_beside_one(power):
+    """``exp(t)`` is above ``1 + t``, and ``log(1 + t)`` below t, also by less than the precision of the interval."""
+    small = Rational(1, 2**power)
+    assert not is_nonnegative_at(1 + small - exp(small), {})
+    assert not is_nonnegative_at(log(1 + small) - small, {})
+
+
+def test_an_interval_that_touches_the_cut_of_atan2_from_below_refutes_nothing():
+    """At x = 1 the square is 0, of which only an interval is known: atan2 has the value pi there, or is near -pi."""
+    x = symbols("x", real=True)
+    square = (sqrt(3) * sqrt(2 + x) - 3) ** 2
+    assert decide(Abs(atan2(-square, -1)), pi - atan(square)).verdict != "false"
 
 
 @pytest.mark.parametrize("claim", ["asin(2) == 1", "acos(-3/2) == 1", "log(-2) == 1", "log(0) == 1"])

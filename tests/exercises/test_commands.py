@@ -120,3 +120,15 @@ def test_a_terminal_shows_the_title_of_a_drawing_and_not_its_bytes(capsys, monke
     monkeypatch.setattr("sys.stdout.isatty", lambda: True)
     text = run(capsys, "exercise", "rod_about_end")[1]
     assert "*Figure:* A rod that rotates" in text and "data:" not in text
+
+
+@pytest.mark.parametrize(
+    ("content", "words"), [("1a: 1\n1a: 2\n", "line 2: expected one answer to question 1a, got a second one"),
+                           ('{"1a": "1", "1a": "2"}', "expected each name once, got '1a' more than once")],
+)  # fmt: skip
+def test_two_answers_to_one_question_are_refused(capsys, tmp_path, content, words):
+    sheet, answers = tmp_path / "sheet.json", tmp_path / "answers.txt"
+    run(capsys, "exercise", "rod_about_end", "--format", "json", "-o", str(sheet))
+    answers.write_text(content, encoding="utf-8")
+    code, _, message = run(capsys, "grade", str(sheet), str(answers))
+    assert code == USAGE and words in message

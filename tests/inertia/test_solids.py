@@ -438,3 +438,11 @@ def test_the_cubature_would_notice_a_wrong_formula():
     wrong = mass_properties([Part("cylinder", {"radius": "1.3", "length": "2.1000000021"}, density=3)])
     with pytest.raises(AssertionError):
         close(wrong, summed(points, 3 * weights))
+
+
+def test_a_density_that_is_negative_in_a_part_is_refused_as_in_scenes():
+    """A box with the density 1 + 3*x had the moments of a body that cannot exist."""
+    with pytest.raises(InputError, match=r"negative nowhere in the body, got '3\*x \+ 1' with -2 at x = -1"):
+        solid("box", a=2, b=1, c=1, density="1 + 3*x")
+    assert solid("box", a=2, b=1, c=1, density="1 + x").mass == 2  # zero at an edge
+    assert solid("box", density="1 + 3*x").mass.free_symbols  # whether it is negative depends on the dimensions

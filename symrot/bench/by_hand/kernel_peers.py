@@ -79,9 +79,12 @@ TEXTBOOK: dict[str, Callable[[], list[sympy.Expr]]] = {
 
 
 def derivatives_of(name: str) -> tuple[str, list[tuple[str, str]]]:
-    """Return the name of the kernel ``name`` without its derivatives, and the derivatives as pairs (output, input)."""
+    """Return the name of the kernel that ``name`` extends by derivatives, and the derivatives as pairs (output, input).
+
+    For ``euler_zxz_body_rates_by_angles`` these are ``euler_zxz_body_rates`` and nine pairs such as ("dphi", "theta").
+    A kernel without derivatives gives its own name and an empty list.
+    """
     entries = [output.split(BY) for output in _outputs(kernel_program(name).signature) if BY in output]
-    # A kernel without derivatives gives its own name and an empty list.
     return name.split(BY)[0], [(output, variable) for output, variable in entries]
 
 

@@ -216,7 +216,7 @@ class ExactPath:
         return rows
 
     def error(self, t: float, periodic: bool) -> float:
-        """Return the error of the states at the time ``t``, from the same path with shorter steps.
+        """Return the estimated error of the states at the time ``t``: the difference from a path with shorter steps.
 
         The error of rates is relative to the largest initial rate (to :data:`SLOWEST` rad/s if the body starts at
         rest). With ``periodic``, the body is free, and each path is computed for one period and repeated.

@@ -24,8 +24,8 @@ Floats = NDArray[np.float64]
 PARTS = (0.382, 0.618, 0.854, 1.0)
 """Fractions of the span at which errors are measured; one time is not enough, since an error may pass through zero."""
 REST = 1e-3
-"""An error of omega is divided by the length of omega, or by this fraction of the largest length at the compared times
-if that is larger."""
+"""An error of omega is relative to |omega| at the same time. For a body nearly at rest, the divisor is instead REST
+times the largest |omega| at the times for which states are compared."""
 
 
 class State(NamedTuple):

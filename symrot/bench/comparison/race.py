@@ -77,10 +77,10 @@ def race(
     rounds: int,
     turn: Callable[[int], object] = lambda number: None,
 ) -> None:
-    """Time all runs alternately, and append the seconds of each run to its entry.
+    """Time several functions in turn, round after round, and store the processor times, s, in a Measured for each.
 
-    ``entries`` are pairs (entry, function to be timed); ``turn(number)`` is called at the start of each round, to
-    report the progress.
+    ``entries`` are pairs (measured, function): the times of the function are appended to ``measured.seconds``.
+    ``turn(number)`` is called at the start of each round, to report the progress.
     """
     collecting = gc.isenabled()
     gc.disable()

@@ -138,8 +138,8 @@ def _short(value: Any, name: str = "") -> Any:
 def summary(studies: Mapping[str, Mapping[str, Any]]) -> list[dict[str, Any]]:
     """Return, for each other program, the median and the smallest of its times divided by those of symrot's steppers.
 
-    There is one ratio for each motion and each power of ten of the error that both reach; a program without ratios is
-    left out.
+    There is one ratio for each motion and each power of ten of the error, such as 1e-6, that both symrot and the other
+    program reach. A program without ratios is left out.
     """
     rows = []
     for peer in PEERS:

@@ -3,9 +3,10 @@
     python -m symrot.bench.comparison.sweeps [--count 1e6] [--seconds 10] [--rounds 3]
 
 Every motion is a damped heavy top with its own rate and weight; a sweep writes three quantities at 11 times to a Zarr
-file. The longer the motions, the less the rest of a sweep counts: outputs, files, starts of processes. All contestants
-use the same number of cores, one after the other in each round; the median of the ratios counts. On a busy machine,
-the processor time of client, scheduler and workers tells how many times as fast two workers can be as one.
+file. A sweep also computes outputs, writes files and starts processes; the longer the motions, the smaller the share of
+this work. All contestants use the same number of cores, one after the other in each round; the median of the ratios
+counts. On a busy machine, the processor times of client, scheduler and workers show the largest speed-up that a second
+Dask worker can give.
 
 ``pip install 'symrot[sweep,cluster]'`` installs what is needed.
 """
@@ -84,7 +85,7 @@ class Cost(NamedTuple):
 
     @property
     def attainable(self) -> float:
-        """How many times as fast two workers can be as one, if client, scheduler and workers share two cores."""
+        """The largest speed-up by a second Dask worker, as 1.8, if client, scheduler and workers share two cores."""
         return 2 / (1 + self.client / self.workers)
 
 
@@ -109,15 +110,16 @@ def _on_cluster(scene: Scene, count: int, workers: int) -> Cost:
 
 
 def _peak() -> float:
-    """Return the largest memory, in MB, that this process or a process that it started and that has ended has used."""
+    """Return the largest memory, in MB, that one process has used: this one, or one of its finished child processes."""
     unit = 1e6 if sys.platform == "darwin" else 1e3
     return max(resource.getrusage(who).ru_maxrss for who in (resource.RUSAGE_SELF, resource.RUSAGE_CHILDREN)) / unit
 
 
 def main() -> None:
-    """Print a table with a row for each repetition: times of ``propagate_ensemble`` and of sweeps, ratios, memory.
+    """Print a table with a row for each repetition: times of ``propagate_ensemble`` and ``sweep``, ratios, memory.
 
-    The sweeps run without Dask, with one Dask worker and with two; the last row has the medians of the ratios.
+    ``symrot.sweep`` runs the same motions without Dask, with one Dask worker and with two. The last row has the medians
+    of the ratios.
     """
     parser = argparse.ArgumentParser(description="sweeps against propagate_ensemble, and two Dask workers against one")
     parser.add_argument("--count", type=float, default=1e6)

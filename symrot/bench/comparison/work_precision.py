@@ -68,8 +68,8 @@ def study(
     methods : str, optional
         Groups of :data:`symrot.bench.comparison.contestants.CONTESTANTS`, comma-separated; default: all.
     quick : bool
-        Whether to run every second one of more than 16 tolerances, fewer repetitions, and heyoka only in its default
-        setting.
+        Whether to save time: fewer repetitions, heyoka only in its default setting, and for a method with more than 16
+        tolerances every second tolerance.
     say : callable
         Called with messages about the progress.
     tolerances : sequence of float, optional

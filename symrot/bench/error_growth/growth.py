@@ -223,6 +223,9 @@ def exponent(revolutions: Floats, errors: Floats) -> float:
 
 
 def median_curve(curves: list[Any], name: str) -> Floats:
-    """Return the median of several curves of errors at each time; ``name`` is the error, such as ``attitude``."""
+    """Return the median of one kind of error over several motions, at each time.
+
+    ``curves`` are Curves with the same times; ``name`` is ``"attitude"`` or ``"rates"``.
+    """
     medians: Floats = np.exp(np.median(np.log(np.array([getattr(c, name) for c in curves]) + 1e-18), axis=0))
     return medians

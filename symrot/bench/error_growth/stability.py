@@ -56,8 +56,9 @@ def stability(scene: Scene | None = None, long: bool = False, say: Callable[[str
     scene : Scene, optional
         The motion to follow; default: a free plate for many revolutions.
     long : bool
-        Whether to follow the free plate for 1e6 revolutions instead of 1e5. In any motion SciPy, which is slower, is
-        followed for the first 1e4 revolutions instead of the first 1e3, and RK4 for 1e6 instead of 1e5.
+        Whether to follow the free plate for 1e6 revolutions instead of 1e5. For every motion, a scene's too, it also
+        raises the limits of the slow methods: SciPy runs for at most 1e4 revolutions instead of 1e3, RK4 for at most
+        1e6 instead of 1e5.
     say : callable
         Called with messages about the progress.
 

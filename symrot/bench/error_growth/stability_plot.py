@@ -59,7 +59,7 @@ def _rates(axes: Any, data: Any) -> None:
 
 
 def _smoothed(values: Any, linear: bool) -> Any:
-    """Return the largest error up to each time if ``linear``, otherwise the errors ``values`` unchanged."""
+    """Return the errors ``values`` as they are plotted: unchanged, or for a linear time axis the running maximum."""
     if not linear:
         return values
     # This is smoother, because an error that changes its sign is small near its zeros.

@@ -1,1 +1,1 @@
-"""Certificates of exact steps: the C text computes the exact motion, up to errors in double precision with bounds."""
+"""Certificates of exact steps: C code computes the exact motion, and bounds of its rounding errors are proven."""

@@ -21,10 +21,10 @@ _GROW = 1 + 2.0**-40  # more than the rounding errors of a computed bound
 
 
 class UndecidedError(Exception):
-    """Raised for a decision of the C program, such as a comparison, that may differ between inputs of the box.
+    """Raised if a comparison in a C program that is run on :class:`Bounded` numbers can be true as well as false.
 
-    Code that bounds errors then divides the box. The exception is also raised where no bound is known, such as near 0
-    for an arithmetic-geometric mean.
+    The set of inputs is then too large, and the caller divides it. The exception is also raised where no error bound is
+    known, such as near 0 for an arithmetic-geometric mean.
     """
 
 
@@ -231,7 +231,7 @@ def _is_power(value: float) -> bool:
 
 
 def _inexact(exact: Bounded, unit: float) -> Bounded:
-    """Return the result of one operation after rounding.
+    """Return the result of one operation after rounding, with a relative rounding error of at most ``unit``.
 
     ``exact`` is the result before rounding: an interval for its exact value, and the errors that its operands caused.
     """

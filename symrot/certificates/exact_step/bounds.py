@@ -47,9 +47,10 @@ SMALL_MODULUS = 0.7
 
 
 class _Context:
-    """The C text of a free body, run in Python on one part of the box of initial states and step sizes after another.
+    """The C code for exact steps of a free body, interpreted in Python with :class:`Bounded` numbers as its doubles.
 
-    ``prepare`` computes the constants of the motions from a part of the box, and ``after`` the states after a step.
+    ``prepare`` computes the constants of all motions whose initial states lie in given ranges, and ``after`` their
+    states after a step.
     """
 
     def __init__(self, source: str, prefix: str) -> None:
@@ -152,10 +153,10 @@ class _Context:
     ) -> None:
         """Store sine and cosine of ``rate*t + start``, as the C function ``turn`` does, with bounds of their errors.
 
-        ``phase`` points to rate and start, each a sum of two doubles, in revolutions. ``count`` pairs are stored, all
-        equal, for the interval of times at ``t``. The C function adds ``slope*whole`` to the phase; here ``slope`` must
-        be 0 and ``whole`` is ignored. InputError is raised for another slope, for steps of too many revolutions, and
-        for dt times the scale of omega above ``SIZES``.
+        ``phase`` points to rate and start, each a sum of two doubles, in revolutions. ``t`` points to one interval of
+        times; sine and cosine for this interval are stored ``count`` times. The C function adds ``slope*whole`` to the
+        phase; here ``slope`` must be 0 and ``whole`` is ignored. InputError is raised for another slope, for steps of
+        too many revolutions, and for times above 1e298 (``SIZES``), in units of 1/(scale of omega).
         """
         values, first = phase
         rate, start = pair_total([values[first], values[first + 1]]), pair_total([values[first + 2], values[first + 3]])
@@ -183,10 +184,10 @@ class _Context:
     # --- runs ---------------------------------------------------------------------------------------------------------
 
     def prepare(self, moments: list[float], omega: list[Bounded]) -> None:
-        """Compute the constants of the motions that start in a part of the box, and store them in ``self.motion``.
+        """Compute the constants of all motions with initial rates in given ranges, and store them in ``self.motion``.
 
-        ``omega`` has the ranges of the three initial rates in this part; the initial quaternion is any unit quaternion.
-        InputError is raised if the C text rejects the states, UndecidedError if the part must be divided.
+        ``omega`` has the ranges of the three initial rates; the initial quaternion is any unit quaternion. InputError
+        is raised if the C code rejects the states, UndecidedError if the ranges must be divided into smaller ones.
         """
         motion = [self.machine.blank("free_body")]
         zero = point(0.0)
@@ -231,7 +232,8 @@ def _exact_defect(moments: Place, omega: Place) -> list[Any]:
     """Return |L|^2 - 2 T I_mid as a sum of two doubles; it replaces the C function ``exact_defect``.
 
     L is the angular momentum, T the kinetic energy, I_mid the middle moment. The C function sums exactly and rounds
-    once, so the relative error is at most ``PAIR``. ``moments`` and ``omega`` point to three sums of two doubles each.
+    once, so the result has the relative error of one operation, ``PAIR`` = 2^-102. ``moments`` and ``omega`` point to
+    three sums of two doubles each. UndecidedError is raised if a product may underflow.
     """
     inertia, rates = _pairs_at(moments, 3), _pairs_at(omega, 3)
     middle = sorted(range(3), key=lambda i: inertia[i].low)[1]

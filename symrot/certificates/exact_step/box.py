@@ -47,10 +47,12 @@ def signed_parts(box: Box) -> Iterator[Part]:
 
 
 def shells(part: Part) -> Iterator[tuple[float, Part]]:
-    """Split a part of the box of omega by the power of two that scales omega there: yield pairs (power, sub-part).
+    """Split ranges of the components of omega by the power of two that scales omega in the C code.
 
-    The C text divides omega by a power of two near its largest component, so the power may change within a part.
-    InputError is raised for a part in which the largest component reaches 0, or varies by a factor above about 2^8.
+    The C code divides omega by a power of two near its largest component. Yield pairs (power of two, smaller ranges of
+    omega): within the smaller ranges the power is the same.
+    InputError is raised if the ranges contain omega = 0 and other values, or if the size of the largest component
+    varies by a factor above about 2^8. If omega is 0 throughout, the power is 1.
     """
     smallest = max(min(abs(low), abs(high)) for low, high in part)
     largest = max(max(abs(low), abs(high)) for low, high in part)
@@ -69,7 +71,7 @@ def shells(part: Part) -> Iterator[tuple[float, Part]]:
 
 
 def _power(exponent: int) -> float:
-    """Return the power of two by which the C text divides omega: ``2**exponent``, within the range of the C text.
+    """Return the power of two by which the C code divides omega: ``2**exponent``, but at least 2^-1000, at most 2^1000.
 
     ``exponent`` is that of the largest component of omega, as :func:`math.frexp` returns it.
     """
@@ -77,12 +79,12 @@ def _power(exponent: int) -> float:
 
 
 def power_near(largest: float) -> float:
-    """Return the power of two by which the C text divides numbers whose largest absolute value is ``largest``."""
+    """Return the power of two by which the C code divides numbers whose largest absolute value is ``largest``."""
     return _power(frexp(largest)[1]) if largest else 1.0
 
 
 def halves(part: Part) -> tuple[Part, Part]:
-    """Return the two halves of a part of the box, divided in the middle of its widest range.
+    """Return the two halves of ``part``, ranges of the components of omega, divided in the middle of the widest range.
 
     InputError is raised if no double is inside that range, so that the part cannot be divided.
     """

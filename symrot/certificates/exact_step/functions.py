@@ -1,6 +1,6 @@
-"""Functions of numbers with bounds of their errors, as the C text of an exact step computes them.
+"""Functions such as exp and elliptic integrals for numbers with error bounds, as in the C code for exact steps.
 
-The C text computes with sums of two doubles, of about 31 digits. Each operation on such sums is taken to have a
+The C code computes with sums of two doubles, of about 31 digits. Each operation on such sums is taken to have a
 relative error somewhat larger than the one that is proven for it. Intervals of exact values come from functions of
 doubles, whose results are widened by more than their error.
 """

@@ -79,6 +79,11 @@ class _Slope:
     def __abs__(self) -> "_Slope":
         return -self if self.value < 0 else self
 
+    def __eq__(self, other: object) -> bool:
+        return self.value == _slope(other).value
+
+    __hash__ = None  # type: ignore[assignment]
+
     def __lt__(self, other: Any) -> bool:
         return self.value < _slope(other).value
 
@@ -110,7 +115,10 @@ def _number(value: Fraction) -> Decimal:
 
 
 def _rint(x: Any) -> Decimal:
-    """Return the whole number nearest to ``x``; as a Decimal it is a constant, whose derivative by dt is zero."""
+    """Return the whole number nearest to ``x``, a Decimal or a _Slope (a value with its derivative by the step size).
+
+    The result is a Decimal, since its derivative is zero.
+    """
     return _slope(x).value.to_integral_value(ROUND_HALF_EVEN)
 
 

@@ -1,8 +1,8 @@
 """The proof that the C text of an exact step computes the motion: it solves the differential equations of the rates.
 
 With the C text read as exact formulas F(x, dt), two equations are proven: F(x, 0) = x, and dF/d(dt) is the rates at F.
-Their only solution is the motion. Both are compared at random points, modulo a prime, where a square root is a root of
-its argument, and sine and cosine of an angle are a point of the unit circle.
+Their only solution is the motion. The two sides of each equation are compared at random points, modulo a prime. There,
+a square root is a number with the right square, and sine and cosine of an angle are a point of the unit circle.
 """
 
 from collections.abc import Callable, Mapping

@@ -173,10 +173,10 @@ def _is_along(name: str, line: str) -> bool:
 
 
 def _where_else(place: str, line: str, name: str) -> str:
-    """Return words for the axis of a formula called ``name``, which is not along ``line``, such as "about a diameter".
+    """Return words for the axis of a formula called ``name``, which differs from the stated ``line``.
 
-    The words are ``place``, where the formula's name has its axis, such as "about an end". They are "about another
-    axis" if ``place`` is empty, or is where ``line`` is in the body of the formula.
+    The words are ``place``, the point of the axis by the formula's name, such as "about an end". They are "about
+    another axis" if ``place`` is empty, or if ``line``, such as "about a diameter", goes through the same point.
     """
     _, bodies = LINES[line]
     places = [own for body, (own, _) in bodies.items() if body in bodies_of_formula(name)]
@@ -193,7 +193,10 @@ def _is_radial(name: str, quantity: str) -> bool:
 
 
 def is_component(name: str, quantity: str) -> bool:
-    """Return whether a formula's name agrees with the index of ``quantity``: "z axis" with I_zz, not with I_xx."""
+    """Return whether the name of a formula, such as "moment of inertia of a disk, z axis", agrees with an index.
+
+    The index is at the end of ``quantity``: "z axis" agrees with I_zz and not with I_xx. True also without an index.
+    """
     axis = re.search(r", ([xyz]) axis", name)
     word = axis[1] if axis else name.partition(" ")[0] if " component" in name else ""
     index = quantity[-1:]
@@ -208,8 +211,9 @@ def place_exists(place: str) -> bool:
 
 
 def is_at_open_place(context: Context, name: str) -> bool:
-    """Return whether the context has words such as "about the pivot", which may be anywhere, and a formula is for an
-    axis through one place of a body, such as an end.
+    """Return whether the point of the axis is left open: the context says only "about the pivot", or similar words.
+
+    True only if the formula called ``name`` is for an axis through one point of a body, such as an end.
     """
     places = {context.place, *(meaning.place for meaning in context.meanings)}
     return bool(places & {*OPEN_PLACES} and place_of(name) and bodies_of_formula(name))

@@ -28,7 +28,7 @@ SPELLINGS = {"varphi": "phi", "vartheta": "theta", "Phi": "phi", "Theta": "theta
 
 AXIS_OF_ANGLE = {"yaw": "Z", "pitch": "Y", "roll": "X"}
 USUAL_SEQUENCES = ("ZXZ", "ZYX", "xyz", "ZYZ", "XYZ", "zxz")
-"""The sequences that books use most, in this order."""
+"""The Euler sequences that books use most, most usual first: capital letters for body axes, small for space axes."""
 
 PLACE_OF_ANGLE = {
     "precession angle": 0, "precession rate": 0, "angle of the axis": 1, "nutation rate": 1, "spin angle": 2,
@@ -79,7 +79,8 @@ def letter_of_angle(name: str) -> str:
 def place_by_words(title: str, sequence: str) -> int | None:
     """Return the place (0, 1 or 2) of an angle in a sequence by its title, "yaw" or "spin angle"; None if unknown.
 
-    In a sequence such as ZXZ, yaw, pitch and roll are the first, second and third angle.
+    Yaw, pitch and roll are the angles about z, y and x; in a sequence with equal first and last axes, such as ZXZ, they
+    are the first, second and third angle.
 
     Examples
     --------

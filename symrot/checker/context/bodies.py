@@ -27,8 +27,8 @@ class Kind:
     shape : str
         The name of this shape in :mod:`symrot.inertia.shapes`, or an empty text.
     thin : tuple (str, str) or empty
-        Phrase and shape of the body with a thin wall. It is meant instead if only one radius is stated, and may be
-        meant too if none is.
+        Phrase and shape of the same body with a thin wall. If only one radius is stated, the thin body is meant; if
+        none is stated, either body may be meant.
     """
 
     title: str
@@ -182,11 +182,11 @@ BODIES: tuple[Kind, ...] = (
     Kind("gyroscope", ("wheel", "gyroscopic wheel", "rotor"),
          ("a level axle", "steady precession", "of a top", "fast top")),
 )  # fmt: skip
-"""Every body that words can name; the longest matching phrase decides. In phrases for formulas, the article is "a" also
-before a vowel."""
+"""Every body that a user can name in words; the body with the longest phrase in the words is meant. In the names of
+derived formulas, the article is "a" also before a vowel: "a annulus"."""
 
 ALONE = (" about one axis", " about the z axis")
-"""Endings of the names of formulas for rotation about a fixed axis."""
+"""Endings of the names of formulas that hold only for rotation about a fixed axis, not in general motion."""
 
 _FORMULA_PHRASES = tuple(
     sorted({phrase for kind in BODIES for phrase in kind.formulas}, key=lambda phrase: (-len(phrase), phrase))
@@ -208,7 +208,8 @@ _NOUNS = {
     "tube": ("tube radius",), "base": ("base",), "apex": ("apex",), "bottom": ("bottom radius",),
     "top": ("top radius",), "a": ("length",), "b": ("width", "breadth"), "c": ("height", "thickness", "depth"),
 }  # fmt: skip
-"""Maps a dimension of a body to nouns for it, as in "of height h"; a noun with "radius" may also have "diameter"."""
+"""Maps a dimension of a body to nouns for it, as in "of height h". For a noun with "radius" in it, "diameter" in its
+place is understood too."""
 
 _SIDES: dict[str, tuple[tuple[str, Fraction], ...]] = {
     "ellipsoid": ((r"(?:half|semi)-?\s?ax[ei]s", Fraction(1)), (r"diameters|full axes", Fraction(1, 2))),

@@ -66,8 +66,9 @@ class Meaning:
         return tuple(dict.fromkeys(name for spelling in self.spellings for name in spelling))
 
     def is_of(self, name: str) -> bool:
-        """Return whether this is the meaning of ``name``, or of a vector or matrix with the entry ``name``, as L for
-        L_x.
+        """Return whether the meaning applies to ``name``.
+
+        It applies to its own names, and to the entries of a vector or matrix among them: the meaning of L to L_x.
         """
         return self._is_spelled(name, self.names)
 

@@ -64,11 +64,11 @@ def in_context(claim: Claim, named: NamedFormula, verdict: Verdict) -> Verdict:
 
 
 def _with_all_words(claim: Claim, named: NamedFormula, verdict: Verdict) -> Verdict:
-    """Return the verdict on a claim in its context; words of the context that the check cannot use weaken it.
+    """Return the verdict on a claim in its context, a weaker one if the check cannot use a word of the context.
 
-    ``verdict`` is the verdict without the context. If the context has an unused word, return "recognised" where the
-    context proves the claim, and ``verdict`` where it disproves the claim. If a word about the body is not understood,
-    or the place of the pivot is open, return "definition".
+    ``verdict`` is the verdict without the context. If the context has an unused word, return "recognised" instead of
+    "true", and ``verdict`` instead of "false". If a word about the body is not understood, or the context does not say
+    where the pivot is, return "definition".
     """
     # words about the body or its axis that symrot does not understand leave open what the claim means
     if obscure := claim.context.obscure:
@@ -148,8 +148,10 @@ def _by_context(claim: Claim, named: NamedFormula, verdict: Verdict) -> Verdict:
 
 
 def _without_context(claim: Claim, named: NamedFormula) -> tuple[Identification, ...]:
-    """Return the known formulas that would equal the claim if the context stated the body without a point or axis, the
-    other frame, or nothing.
+    """Return the known formulas that would equal the claim with less or other context.
+
+    Three contexts are tried until one gives a formula: the body without a stated point or axis; the frame body instead
+    of space, or space instead of body; no context at all.
     """
     context = claim.context
     if context.body and (context.place or context.body.axes):

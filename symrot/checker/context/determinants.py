@@ -42,8 +42,8 @@ SECOND_ANGLE = re.compile(r"(var)?theta(_?[2yn])?|Theta|beta|pitch|(q|alpha|phi|
 """Pattern of the names of the second of three Euler angles."""
 
 MOST_REPAIRS, MOST_SEQUENCES = 3, 4
-"""The largest number of repairs of a claim, and of Euler sequences that a verdict names because their rate Jacobians
-have the claimed determinant."""
+"""Largest numbers of repairs that a verdict offers, and of Euler sequences that it names. The rate Jacobians of these
+sequences have the claimed determinant."""
 
 
 @cache
@@ -126,8 +126,10 @@ def _is_equal(first: Expr, second: Expr) -> bool:
 
 
 def _edited(claim: Claim, own: Node, formula: Node, letter: str) -> Verdict | None:
-    """Return the verdict "doubtful" if one edit makes ``formula`` the determinant of a rate Jacobian, or None."""
-    # ``own`` is the other side of the claim, det T, and ``letter`` stands for the second angle
+    """Return the verdict "doubtful" if one edit makes ``formula`` the determinant of a rate Jacobian, or None.
+
+    ``own`` is the other side of the claim, such as det(T); ``letter`` is the claim's letter for the second angle.
+    """
     numeric = NumericFilter(claim)
     edits = single_edits(formula, numeric.names, numeric.functions, numeric.is_matrix, numeric.moving)
     repairs: dict[str, Repair] = {}

@@ -58,8 +58,10 @@ def with_lacking_letters(
 
 
 def _fault(target: Expr, value: Expr, lacking: set[Expr]) -> str:
-    """Return "missing_term" or "factor" if ``target`` has a term or factor that ``value`` lacks; otherwise an empty
-    text.
+    """Return the fault of a claim that lacks a term ("missing_term") or a factor ("factor"); "" for any other fault.
+
+    ``value`` is the claimed formula, ``target`` the known one, and ``lacking`` the symbols of ``target`` for which the
+    claim has no letter.
     """
     # m*g*l lacks a term of m*g*l + k*x: both are equal for k = 0, and k is not in the claim
     for symbol in sorted(lacking, key=str):

@@ -94,7 +94,7 @@ class Meant:
 
     @property
     def identification(self) -> Identification:
-        """The known formula as an entry of ``recognised_as`` in a verdict."""
+        """The formula ``known`` as an Identification, such as a verdict lists in ``recognised_as``."""
         return Identification(self.known.name.removesuffix(SQUARED), self.how, self.mapping, self.known.source)
 
 
@@ -135,10 +135,10 @@ def _root(square: Expr) -> Expr:
 
 
 def _unused_rates(mapping: Mapping[Expr, Expr], own: set[Expr]) -> dict[Expr, Expr]:
-    """Return the angle rates that ``mapping`` does not replace, with the derivatives to put in their place.
+    """Return a map from symbols for angle rates to derivatives, as ``{dphi: diff(phi(t), t)}``, for a known formula.
 
-    ``mapping`` maps symbols of a known formula to letters of the claim, ``own`` are the symbols and derivatives of the
-    claim. Example: ``{dphi: diff(phi(t), t)}``; {} if the claim has no derivatives.
+    It has the rates that ``mapping``, from symbols of the known formula to letters of the claim, does not replace. It
+    is empty if ``own``, the symbols and derivatives of the claim, has no derivative.
     """
     if not any(atom.is_Derivative for atom in own):
         return {}
@@ -169,11 +169,11 @@ def with_letters(context: Context, target: Any) -> Any:
 def assignments_of(
     context: Context, target: Any, own: set[Expr], quantity: str, known: Known, is_specific: bool
 ) -> Iterator[dict[Expr, Expr]]:
-    """Yield maps {R: r} from symbols of the known formula ``target`` to the letters ``own`` of a claim.
+    """Yield maps from symbols of the known formula ``target`` to the letters ``own`` of a claim: {R: r} for a radius.
 
-    A map is yielded if books use such letters for these symbols, as r for a radius R, and if it contradicts neither the
-    context nor ``quantity``, the name for which the claim gives a formula. ``is_specific`` says that the formula is for
-    one body or one sequence, and may have symbols that the claim lacks.
+    Books must use such letters for these symbols. Each letter must agree with its meaning in the context, and its axes
+    with those of ``quantity``, the name for which the claim gives a formula. Every letter of the claim is used; symbols
+    may be left over only if ``is_specific``, if the formula is for one body or one sequence.
     """
     own_symbols = sorted(target.free_symbols - {time}, key=str)
     if context.sequence and context.sequence in known.name:  # a formula may lack an angle that the claim has
@@ -205,7 +205,10 @@ def assignments_of(
 
 
 def _may_be(context: Context, name: str, symbol: str, pinned: set[str]) -> bool:
-    """Return whether a letter of a claim can stand for a symbol of a known formula, as r for R."""
+    """Return whether a letter of a claim can stand for a symbol of a known formula, as r for R.
+
+    ``pinned`` are the letters that the context gives to dimensions of the body: such a letter stands only for itself.
+    """
     if symbol in pinned or name in pinned:
         # a letter that the context gives to a dimension of the body stands for that symbol alone
         return name == symbol

@@ -26,8 +26,8 @@ BODIES_OF_WORD = {
     **dict.fromkeys(("box", "cube"), ("box", "box")), "shell": ("spherical shell", "shell"),
     **{name: (name, name) for name in ("cylinder", "cone", "plate", "ellipsoid", "torus")},
 }  # fmt: skip
-"""Maps a word in the name of a quantity to a pair: the body that it means, and a word in the names of formulas for it.
-"""
+"""Maps a word in the name of a quantity, such as "rod" in ``I_rod``, to a pair: the body that the word means, and a
+text that is in the names of derived formulas for this body."""
 
 PLACE_OF_WORD = {
     "end": END, **dict.fromkeys(("centre", "center", "cm", "com", "CM", "G"), "the centre of mass"),
@@ -40,7 +40,7 @@ HALVES = ("a", "l")
 
 
 def of_named_body(claim: Claim, named: NamedFormula, verdict: Verdict, judge: Judge) -> Verdict:
-    """Return the verdict on a claim about a quantity whose name says the body or point, such as ``I_rod`` or ``I_end``.
+    """Return the verdict on a claim about a quantity whose name states a body or point, such as ``I_rod`` or ``I_end``.
 
     Only a formula for this body and point is right. Return ``verdict`` unchanged for other names, and if it is "true",
     "false" or "doubtful". ``judge`` returns the verdict on a claim in its context.
@@ -73,8 +73,8 @@ def _judged(claim: Claim, named: NamedFormula, verdict: Verdict, stated: Context
     """Return the verdict on a claim about a quantity such as ``I_rod``, whose name states the body or point.
 
     ``stated`` is the context that this name states, and ``judge`` returns the verdict on a claim in a context. Return
-    "recognised" if the claim is right in this context, "doubtful" if a repair is. Otherwise return the given
-    ``verdict``, or "definition" in its place if the given verdict names the formula of another body or point.
+    "recognised" if the claim is right in this context, "doubtful" if a repaired claim is. Otherwise ``verdict``, on the
+    claim without this context, counts: return "definition" if it names a known formula, else ``verdict`` itself.
     """
     other = judge(replace(claim, context=stated), named)
     if other.verdict in ("true", "recognised"):
@@ -92,7 +92,7 @@ def _judged(claim: Claim, named: NamedFormula, verdict: Verdict, stated: Context
 
 
 def _not_of_name(named: NamedFormula, verdict: Verdict) -> Verdict:
-    """Return ``verdict`` as "definition", since a quantity's name says another body or point than its formula."""
+    """Return ``verdict`` as "definition", since a quantity's name states another body or point than its formula."""
     reason = (
         f"the formula is the {verdict.recognised_as[0].name}; but the name {named.name} is for another body or point"
     )

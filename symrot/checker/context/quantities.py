@@ -166,7 +166,8 @@ QUANTITIES: tuple[Quantity, ...] = (
     Quantity("unit vector along the axis", ("axis of rotation", "unit axis", "rotation axis"),
              ("axis of",), "n[123]", "1"),
 )  # fmt: skip
-"""Every quantity that words can name; the longest matching phrase decides."""
+"""Every quantity that a user can name in words. If phrases of several quantities occur at the same place in the user's
+words, the longest phrase is used."""
 
 AMBIGUOUS = {"moment": "'moment of inertia' or 'torque'", "rate": "a rate with its quantity, as in 'rate of spin'"}
 """Maps words that name more than one quantity to what should be written instead."""
@@ -239,8 +240,8 @@ LINES: dict[str, tuple[tuple[str, ...], dict[str, tuple[str, str]]]] = {
 }  # fmt: skip
 """Maps the title of a line that serves as an axis, such as "about a diameter", to a pair: words that users write for
 the line after "about", and a dictionary of the bodies with such a line. This dictionary maps a body, such as "a disk",
-to (point, axes) in the names of derived formulas: the title of a point of the line, and the letters of the axes through
-this point that can be the line, "xy" for a diameter."""
+to a pair (point, axes) that the names of derived formulas for the line contain. A diameter of a disk goes through the
+centre of mass along x or y, which gives (CENTRE, "xy")."""
 
 UNUSED = frozenset({
     "a", "an", "the", "of", "its", "their", "any", "some", "this", "that", "is", "are", "and", "in", "by",
@@ -305,9 +306,8 @@ def place_of_words(words: str, formulas: Collection[str] = ()) -> tuple[str, str
 
 
 _BEFORE_PLACE = r"(through|about|hung at|hung from|at)(?: (?:any|some|one|either)(?: of)?(?! axis))?"
-"""Pattern of the words before the point or line that says where an axis is, such as "about one of" before "its ends".
-The pattern leaves out the word "one" of "about one axis", which means the fixed axis of a body; "about axis" means its
-axis of symmetry."""
+"""Pattern of the words in front of a point or line, such as "about one of" in "about one of its ends". In "about one
+axis" only "about" matches: these words mean the fixed axis of a body, and "about axis" its axis of symmetry."""
 
 _END_OF_PLACE = r"(?![\w-])(?! (?:of|in|through|perpendicular|normal|parallel|along|at|inclined|tilted)\b)"
 

@@ -156,15 +156,15 @@ def _frame_in(words: str) -> tuple[str, str]:
 
 
 _NO_AXIS_OF = ("", r"(?! (?:in|through|perpendicular|normal|parallel|at)\b)")
-"""Two patterns of what may follow a phrase for a quantity. The first, for most phrases, allows all words. The second,
-for a phrase that ends with "axis", excludes words such as "in": "axis in the plane" is not the axis of a body."""
+"""Two patterns, placed after a phrase for a quantity. The first allows any words. The second, for phrases that end with
+"axis", allows no words such as "in": "axis of rotation" is a quantity, but not in "axis of rotation in the plane"."""
 
 
 def _quantity(plain: str, words: str, prefix: str) -> tuple[Quantity, str]:
-    """Return the quantity that words state, such as the torque, and the phrase in the words that states it.
+    """Return the quantity with which words begin, such as the torque, and the phrase for this quantity.
 
-    The phrase is searched in ``plain``, the words as ``plain_words`` spells them. Raise InputError if no quantity comes
-    first in them; the message begins with ``prefix`` and quotes ``words`` as the user typed them.
+    ``plain`` are the words in the spelling of ``plain_words``. Raise InputError if they do not begin with a quantity;
+    the message begins with ``prefix`` and quotes ``words`` as the user typed them.
     """
     phrases = [
         (match.start(), -len(phrase), phrase, quantity)

@@ -19,9 +19,9 @@ __all__ = ["BranchCut", "branch_cuts"]
 
 @dataclass(frozen=True)
 class BranchCut:
-    """A branch cut of ``atan2(y, x)``: the formula ``zero``, for y, is zero and the formula ``negative``, for x, is
-    negative.
+    """The branch cut of ``atan2(y, x)``, where y = 0 and x < 0.
 
+    ``zero`` is a formula that is zero where y is, such as y without constant factors, and ``negative`` is x.
     ``values`` maps each atan2 whose first argument vanishes on the cut to its value there.
     """
 

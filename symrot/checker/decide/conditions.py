@@ -1,7 +1,7 @@
 """Conditions under which a false claim becomes true, such as a unit norm, equal moments, or the sign of a root.
 
-A condition is a common factor of all residuals (left minus right side of each entry): where it is zero, the claim is
-true. Only conditions that textbooks state count, since every residual vanishes somewhere.
+A condition comes from a common factor of all residuals (left minus right side of each entry): where the factor is zero,
+the claim is true. Every residual vanishes somewhere; so only conditions of the kinds that textbooks state are returned.
 """
 
 import re
@@ -24,9 +24,9 @@ from symrot.exact.ring.ring import FormulaRing
 __all__ = ["branch_requirements", "requirements"]
 
 MOMENT = re.compile(r"[ABC]|[IJ]_?([xyz1-3]|([xyz1-3])\2|p|perp|par|parallel|t|s|a)?", re.ASCII)
+"""Pattern of the usual names of moments of inertia, such as A, I_x and I_xx."""
 PRODUCT_OF_INERTIA = re.compile(r"[IJP]_?(xy|yx|xz|zx|yz|zy|12|21|13|31|23|32)", re.ASCII)
-"""MOMENT is the pattern of names of moments of inertia, PRODUCT_OF_INERTIA the pattern of names of products of
-inertia."""
+"""Pattern of the usual names of products of inertia, such as I_xy and I_12."""
 
 MOST_TERMS, LARGEST_DEGREE, MOST_LETTERS = 400, 24, 20
 """Limits on the shortest residual (left minus right) of a claim: terms, degree and letters, beyond which nothing is
@@ -45,7 +45,7 @@ def requirements(
     ----------
     ring : FormulaRing
     numerators : sequence of PolyElement
-        The numerators, in lowest terms, of left - right for those entries of the claim where that is not zero.
+        The numerator, in lowest terms, of each nonzero difference of the left and right entries of the claim.
     sides : sequence of (Expr, Expr)
         The left and the right side of the entry to which each numerator belongs.
     entries : int

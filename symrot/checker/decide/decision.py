@@ -198,7 +198,7 @@ def _case(equation: Equation, lefts: list[Expr], rights: list[Expr], shape: Shap
 
 
 def for_positive_bases(decision: Decision, equation: Equation) -> Decision:
-    """Return ``decision``, with "conditional" for "true" if it assumes a > 0 for a power ``a**b``."""
+    """Return ``decision``, with "conditional" instead of "true" if its proof assumes a > 0 for a power ``a**b``."""
     # of powers with letters in their exponents
     bases = [base for base in equation.bases if leaves_of([base]) and not is_positive_where_defined(base)]
     if not bases or decision.verdict != "true":

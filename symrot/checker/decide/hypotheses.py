@@ -40,7 +40,7 @@ CANDIDATES = 8
 text becomes the counterexample, a rational one if there is any."""
 
 OTHER_VALUES = tuple(Rational(n, d) for n, d in ((1, 1), (2, 1), (1, 2), (-1, 1), (3, 1), (-1, 3), (5, 7), (-3, 2)))
-"""Values for symbols to which a random point that obeys the hypotheses gives none."""
+"""Values for symbols that occur in no hypothesis: a random point that obeys the hypotheses gives them no value."""
 
 
 NOWHERE = "there are no real values of the letters for which both sides are real numbers"
@@ -91,14 +91,14 @@ class Hypotheses:
     # -- a point of the domain ----------------------------------------------------------------------------------------
 
     def point_is_known(self, further: Sequence[Need] = (), zeros: Sequence[Expr] = ()) -> bool:
-        """Return whether a real point is known at which the hypotheses hold and all formulas have real values.
+        """Return whether a real point is known at which the hypotheses hold and the claim's formulas have real values.
 
         Parameters
         ----------
         further : sequence of Need
             Further conditions on the point: nonzero divisors of a proof, the sign that a condition states.
         zeros : sequence of Expr
-            Formulas of a condition that must vanish too.
+            Further formulas, such as those of a condition for the claim, that must be zero at the point.
 
         Raises
         ------

@@ -24,21 +24,23 @@ from symrot.exact.ring.ratio import TooLarge
 __all__ = ["Infeasibility", "infeasibility_proof", "vanishes_on"]
 
 MOST_CASES = 40
+"""Largest number of cases of a proof; a case counts again after each Groebner basis that is computed for it."""
 MOST_ROUNDS = 6
-"""The largest number of cases of a proof, and of Groebner bases in one case."""
+"""Largest number of Groebner bases that are computed one after the other for one case."""
 
 MOST_PRODUCTS = 150_000
 """The largest number of products of terms in all Groebner bases of one proof."""
 
 
 class _Undecided(Exception):
-    """Exception raised if a case is not proven impossible."""
+    """Raised by :class:`_Prover` if it finds no proof that given polynomials have no common real zero."""
 
 
 @dataclass(frozen=True)
 class Infeasibility:
-    """The reason why no point obeys the constraints, and the polynomial that cannot vanish, if it is a single one, else
-    None.
+    """The reason why no point obeys a set of constraints.
+
+    If the reason is one polynomial that would have to be zero but never is, it is ``polynomial``, otherwise None.
     """
 
     reason: str
@@ -93,9 +95,7 @@ class _Prover:
         self.forbidden = {poly.monic() for poly in constraints.nonzero if poly and not poly.is_ground}
 
     def impossible(self, zeros: Sequence[PolyElement], rounds: int = MOST_ROUNDS) -> Infeasibility:
-        """Return the reason why the polynomials ``zeros`` cannot all vanish; raise ``_Undecided`` if no proof is
-        known.
-        """
+        """Return the reason why the polynomials ``zeros`` have no common zero; raise ``_Undecided`` without a proof."""
         self.cases += 1
         # ``rounds`` is the number of Groebner bases that may still be computed
         if self.cases > MOST_CASES or rounds == 0:
@@ -189,8 +189,9 @@ class _Prover:
         return roots == int(at_zero)
 
     def squares(self, poly: PolyElement) -> list[tuple[Any, PolyElement]]:
-        """Return [(1, x), (2, y)] for ``x^2 + 2*y^2`` or its negative: pairs (d, l) with d > 0 and l linear or 1; [] if
-        impossible.
+        """Return pairs (d, l) such that a polynomial of degree 2, or its negative, is the sum of all ``d*l^2``.
+
+        d is positive, and l is linear or 1. Example: [(1, x), (2, y)] for ``x^2 + 2*y^2``; [] if there is no such sum.
         """
         if max(map(sum, poly)) != 2:
             return []
@@ -201,7 +202,7 @@ class _Prover:
         return []
 
     def _completed(self, rest: PolyElement) -> list[tuple[Any, PolyElement]]:
-        """Return [(1, x), (2, y)] for ``x^2 + 2*y^2``: pairs (d, l) with d > 0 and l linear or 1; [] if impossible."""
+        """Return pairs (d, l), as :meth:`squares` does, for a polynomial but not for its negative."""
         squares = []
         for place in sorted(occurring([rest])):
             x = self.ring.gens[place]
@@ -223,7 +224,10 @@ class _Prover:
     # -- ranges -------------------------------------------------------------------------------------------------------
 
     def out_of_range(self, poly: PolyElement, zeros: Sequence[PolyElement]) -> bool:
-        """Return whether bounds of the unknowns keep a polynomial from zero: x - 2 if x^2 + y^2 = 1."""
+        """Return whether bounds of the unknowns, which follow from ``zeros``, show that a polynomial is never zero.
+
+        Example: if x^2 + y^2 - 1 is zero, then -1 <= x <= 1, and x - 2 is never zero.
+        """
         bounds = self.bounds(zeros)
         low, high = reduce(sum_of_ranges, (_term_range(mono, c, bounds) for mono, c in poly.items()))
         return bool(low > 0 or high < 0)

@@ -50,7 +50,10 @@ as texts."""
 
 
 def degree_of(formulas: Sequence[Expr]) -> int:
-    """Return an upper bound on the degree of ``formulas``, multiplied out, in symbols, sines and cosines."""
+    """Return an upper bound on the largest degree of a formula in ``formulas`` after multiplying out; 0 for no formula.
+
+    The degree is in symbols, sines and cosines: 3 for ``x*sin(y)^2``.
+    """
     # a large degree shows early that an expansion would take too long
     plain = sum(map(_size, formulas)) <= LARGEST_DEGREE
     bases = {} if plain else _base_multiples(formulas)

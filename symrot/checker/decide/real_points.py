@@ -20,18 +20,18 @@ from symrot.exact.ring.polynomials import occurring, value_at
 __all__ = ["ATTEMPTS", "RealPoint", "real_points"]
 
 ATTEMPTS = 120
+"""Default number of attempts to find a random point that obeys the constraints."""
 RATIONAL = 60
-"""ATTEMPTS is the default number of attempts to find a random point; in the first RATIONAL of them, all values are
-rational."""
+"""Number of attempts, the first ones, in which all values are rational; later ones may use irrational roots."""
 
 MOST_STEPS = 60
+"""Largest number of steps in one attempt to find a point; a step chooses values of unknowns or solves an equation."""
 MOST_TERMS = 300
-"""MOST_STEPS is the largest number of steps in one attempt to find a point that obeys the constraints, MOST_TERMS the
-largest number of terms in an equation that is still to be solved."""
+"""Largest number of terms in an equation for the unknowns; if an equation grows beyond it, the attempt ends."""
 
 MOST_BARREN = 3
-"""The number of failures to find an allowed point on a quadric, after which its equation is not solved as a quadric
-again."""
+"""Number of failures to find an allowed point on a quadric (the surface of an equation of degree 2). After them, the
+method for quadrics is no longer used for this equation."""
 
 LARGEST_EXTENSION = 8
 """The largest degree of a field of algebraic numbers over the rationals."""
@@ -89,7 +89,7 @@ def _sign(value: Any, field: Any) -> int:
 def real_points(constraints: Constraints, attempts: int = ATTEMPTS) -> Iterator[RealPoint | None]:
     """Yield, for each attempt, a point that exactly obeys all constraints, or None.
 
-    The points are the same on every machine. Nothing is yielded if the constraints are not ``real``.
+    The points are the same on every machine. Nothing is yielded if the imaginary unit is an unknown of the ring.
     """
     source = Random(1)
     known: dict[Any, Any] = {}
@@ -308,7 +308,9 @@ class _Drawing:
                 raise _DeadEnd
 
     def adjoined(self, factor: PolyElement, place: int) -> Any:
-        """Return an irrational root of ``factor``, a polynomial in one unknown, and add it to the number field.
+        """Return an irrational root of ``factor``, and extend the number field by it.
+
+        ``place`` is the index of the unknown of this polynomial.
 
         Raise _DeadEnd if that is impossible.
         """

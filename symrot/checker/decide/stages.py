@@ -135,9 +135,9 @@ def nonzero_by_hypothesis(case: ClaimCase) -> None:
 
 
 def domain_of_text(case: ClaimCase) -> None:
-    """Add the divisors of a claim's text to ``case.ring``, so that a proof has the condition that they are nonzero.
+    """Tell ``case.ring`` to treat all divisors in the claim's text as nonzero; a proof then has this as a condition.
 
-    Raise InputError if the sides are provably real nowhere, or if a hypothesis provably holds nowhere.
+    Raise InputError if it is proven that no values of the letters make both sides real, or satisfy a hypothesis.
     """
     for divisor in case.equation.divisors:
         case.ring.ratios.invert(case.ring.ratio(divisor), divisor)
@@ -253,7 +253,11 @@ def _independent(nonzero: Mapping[str, Expr]) -> dict[str, Expr]:
 
 
 def _shorter(first: Expr, second: Expr) -> Expr:
-    """Return the more readable one of two formulas for the same divisor."""
+    """Return the formula with the shorter text, of two formulas for the same divisor.
+
+    If one formula has more than MUCH_LARGER times as many symbols and operations, the other is returned, whatever its
+    text.
+    """
     few, many = sorted((first, second), key=lambda formula: pieces([formula]))
     if pieces([many]) > MUCH_LARGER * pieces([few]):
         # a much larger formula is not even written as text

@@ -1,7 +1,7 @@
 """Claims for the rate of a rotation matrix, ``R' = [ω]× R``, tested on a rotation.
 
-The claim was recognised by its right side alone. There, R may stand for the transpose of the matrix that R is on the
-left; a test with a rotation in place of R shows whether both sides mean the same matrix.
+The claim was recognised by its right side alone. On the right, R may stand for the transpose of the matrix that R is on
+the left. A test with a rotation in place of R shows whether both sides mean the same matrix.
 """
 
 import re

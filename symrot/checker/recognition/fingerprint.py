@@ -25,9 +25,9 @@ value is simply its power (PRIME + 1)/4.
 DRAWS = tuple((pow(3, 101 + 2 * n, PRIME), pow(3, 102 + 2 * n, PRIME)) for n in range(48))
 """Pairs (value of one symbol, value of all other symbols), tried in turn until the formula is defined."""
 MOST_UNDEFINED = 3
-"""The number of pairs in DRAWS that are tried for one formula. With each pair, all symbols but one have the same value;
-so a formula that has no value for any of these pairs, such as x/(A - B), probably has none wherever A equals B.
-"""
+"""Number of pairs in DRAWS with which one formula is evaluated at most. With each pair, all symbols but one have the
+same value; so a formula that is undefined for all these pairs, such as x/(A - B), is probably undefined wherever two
+symbols are equal."""
 PARTS = 4
 """The number of parts into which an angle x is divided: cos(x) and sin(x) are computed from cos(x/4) and sin(x/4), so
 that cosines and sines of x/2 and x/4 have values too."""
@@ -36,7 +36,8 @@ MOST_CANCELLED = 10
 this would take seconds.
 """
 LARGEST_MULTIPLE = 400
-"""The largest n for which cos(n*x/4), sin(n*x/4) and x**n are evaluated; beyond it, a formula has no fingerprint."""
+"""The largest n for which cos(n*x/4), sin(n*x/4) and x**n are evaluated. A formula with a larger n has no value modulo
+``PRIME``, and so is never recognised."""
 
 Values = tuple[int, ...]
 """The values of a formula's entries modulo ``PRIME``."""
@@ -162,10 +163,10 @@ class Fingerprint:
     idle: tuple[Expr, ...] = ()  # atoms in the formula that do not change its value
 
     def rows(self, order: Sequence[int]) -> list[Values]:
-        """Return the signature of each atom, scaled so that the formulas x and 2*x have the same rows.
+        """Return the signatures of all atoms, scaled so that the formulas x and 2*x have the same signatures.
 
-        The values of each signature come in ``order``, the indices of the formula's entries. They are divided by the
-        sum of all atoms' values for the first entry for which this sum is not zero.
+        ``order`` are indices of the formula's entries: each signature has its values in this order. All values are
+        divided by one number, the sum of all atoms' values for the first entry with a nonzero sum.
         """
         total = [sum(column) % PRIME for column in zip(*self.signatures, strict=True)]
         # the first entry whose values have a nonzero sum
@@ -241,10 +242,10 @@ def _misses(rest: Expr, divisor: Expr, point: Mapping[Expr, int]) -> bool:
 
 
 def _from_one_draw(entries: Sequence[Expr], written: Sequence[Expr]) -> Fingerprint | None:
-    """Return the fingerprint of the formula ``entries`` by the first pair of values in DRAWS alone, or None.
+    """Return the fingerprint of the formula ``entries``, evaluated with the first pair of numbers in DRAWS, or None.
 
     ``written`` are the formula's atoms (symbols, functions, derivatives). Return None if the formula has no value for
-    this pair, or does not change with one of its atoms: the caller then tries other pairs.
+    this pair, or does not change with one of its atoms: the caller then tries other pairs of numbers.
     """
     raised, others = DRAWS[0]
     point = dict.fromkeys(written, others)
@@ -263,9 +264,9 @@ def _from_one_draw(entries: Sequence[Expr], written: Sequence[Expr]) -> Fingerpr
 def _sum_over_pairs(entries: Sequence[Expr], atom: Expr, atoms: Sequence[Expr], written: Sequence[Expr]) -> Values:
     """Return the signature of ``atom`` for a formula that is undefined where two atoms are equal, such as x/(A - B).
 
-    The signature is a sum of values of the formula, one for each other atom in ``atoms``, the symbols on which the
-    formula depends. In this value, ``atom`` has one number, the other atom a second one, and all remaining symbols in
-    ``written`` a third one. Raise NotInField if the formula has none of these values.
+    ``atoms`` are the symbols that change the value of the formula, ``written`` all its symbols. For each b in ``atoms``
+    other than ``atom``, the formula is evaluated with one number for ``atom``, a second for b and a third for all other
+    symbols. The signature is the sum of these values, without undefined ones. Raise NotInField if all are undefined.
     """
     raised, others = DRAWS[0]
     second, _ = DRAWS[1]

@@ -126,9 +126,10 @@ def _value(formula: Any) -> Any:
 
 
 def _in_new_names(tree: Node, source: str, define: Sequence[tuple[str, Node]] = ()) -> Any:
-    """Return the SymPy value of a tree, with the names in ``define`` replaced by the formulas that define them.
+    """Return the SymPy value of a formula's tree, with a new real symbol for each letter.
 
-    A name whose rate occurs becomes a function of time.
+    Names in ``define``, pairs (name, tree), are replaced by their formulas. A name whose rate occurs becomes a function
+    of time. ``source`` is the text of the formula, for error messages.
     """
     tree = with_natural_base(tree) if has_natural_base([tree]) else tree
     quantities: dict[str, Any] = {letter: Symbol(letter, real=True) for letter in letters_of_quantities([tree])}
@@ -177,7 +178,7 @@ def identified(
 ) -> Iterator[Identification]:
     """Yield the formulas known to symrot that equal a SymPy value, perhaps transposed or with other letters.
 
-    First come the formulas that need the fewest such changes (transpose, sign, factor) and the fewest other letters.
+    First come the formulas that need the fewest changes of form (transposition, sign, factor) and of letters.
 
     Parameters
     ----------
@@ -226,7 +227,11 @@ def _changes(match: Identification) -> tuple[int, int, int]:
 
 
 def _views(shape: tuple[int, int] | None, count: int) -> Iterator[View]:
-    """Yield the ways to read ``count`` entries: as they are, transposed, with a quaternion's scalar last, or both."""
+    """Yield the arrangements of ``count`` entries in which a formula is searched.
+
+    These are the entries as they are, and for a vector or matrix transposed. With four rows or columns, as for
+    quaternions, both are also searched with the scalar part stored last instead of first.
+    """
     plain = tuple(range(count))
     yield View("", shape, plain)
     if shape is None or shape == (1, 1):
@@ -381,7 +386,7 @@ def _factor(
     idle: Sequence[Expr],  # symbols in own that do not change its value
     factors: Sequence[Rational],
 ) -> Rational | None:
-    """Return the first k in ``factors`` with own = k * known at a test point.
+    """Return the first number k in ``factors`` with own = k * known for all entries at a test point.
 
     Return None if no factor fits, or if none of the test points gives both formulas a value.
     """

@@ -33,11 +33,14 @@ __all__ = ["FILE", "Known", "by_fingerprint", "derived", "ending_of", "page", "r
 FILE = Path(__file__).with_name("known_formulas.toml")
 
 LONGEST = 6000
-"""The largest number of characters in a formula with a name of its own in ``known_formulas.toml``."""
+"""The largest number of characters in the text of a formula in ``known_formulas.toml``.
+
+For sides of steps in derivations, LONGEST_DERIVED is the limit.
+"""
 
 LONGEST_DERIVED = 900
-"""The largest number of characters in a formula of ``known_formulas.toml`` that has no name of its own and is only a
-side of a step in a derivation."""
+"""The largest number of characters in the text of a formula in ``known_formulas.toml`` that is known only as one side
+of an equation in a step of a derivation, and so is named after the step."""
 
 
 @dataclass(frozen=True)
@@ -58,13 +61,13 @@ class Known:
 
     @property
     def is_step(self) -> bool:
-        """Whether the formula is a side of a derivation's step; then it has no name of its own."""
+        """Whether the formula is one side of an equation in a step of a derivation; then it is named after the step."""
         return ", step " in self.source
 
 
 @cache
 def _formulas_of(group: Callable[[], Iterator[Named]]) -> tuple[Named, ...]:
-    """Return the formulas that a function of this file or of ``formulas`` yields, derived once per process."""
+    """Return the formulas that the function ``group`` yields, such as `tops`; they are derived once per process."""
     return tuple(group())
 
 
@@ -104,9 +107,9 @@ COMPONENTS = {(3, 1): ("first", "second", "third"), (4, 1): ("scalar", "first", 
 LEAST_OF_RELATION = 3
 """The smallest number of symbols in a relation of mechanics in ``known_formulas.toml``."""
 LEAST_OF_COMPONENT = 3
-"""The smallest number of symbols in a vector's component that is a formula of its own in ``known_formulas.toml``.
+"""The smallest number of symbols in a component of a known vector for the component to be stored as a known formula.
 
-A shorter one could mean many formulas.
+A component with fewer symbols could mean many formulas.
 """
 
 
@@ -134,8 +137,10 @@ def _related() -> Iterator[Named]:
 
 
 SCALAR_PRODUCTS = ("power of a torque", "kinetic energy of rotation from the angular momentum")
-"""Names of formulas that are a scalar product a . b. Every scalar product equals such a formula; so a claim means it
-only with the letters that books use for its two vectors."""
+"""Names of known formulas that are a scalar product of two vectors, such as M . omega for a power.
+
+A claim with any other product a . b would match them too; so it must use the letters of books for the two vectors.
+"""
 
 
 def _selected(
@@ -175,7 +180,7 @@ def _selected(
 
 @cache
 def ending_of(name: str) -> str:
-    """Return the end of a known formula's name, such as ", squared" or ", 2 atan2"; "" without such an end."""
+    """Return ", squared" or an inverse function, such as ", 2 atan2", at the end of a formula's name; else ""."""
     # the formula then is a function of the quantity: its square, cosine, or half angle's cosine
     ending = re.search(r", (squared|(\S+ )?(acos|asin|atan2))$", name)
     return ending[0] if ending else ""

@@ -12,7 +12,7 @@ from symrot.checker.claim.tree import Node, negated, number, product, sum_of
 __all__ = ["read_printed"]
 
 MARKED = re.compile(r"\\?\w+(?:_\{[^{}]*\}|')")
-"""A name that is not valid in Python, such as a_{k-2} or c': it has an index in braces, or a prime."""
+"""Pattern of names that are not valid in Python: with an index in braces, as a_{k-2}, or with a prime, as c'."""
 
 
 def read_printed(text: str) -> Node:

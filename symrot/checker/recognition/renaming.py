@@ -14,7 +14,7 @@ AXIS = {letter: axis for axis, letters in ((0, "0sw"), (1, "1x"), (2, "2y"), (3,
 """Last letter of a name -> its axis; 0 is the scalar part of a quaternion."""
 
 LETTERS = {"A": 1, "B": 2, "C": 3, "p": 1, "q": 2, "r": 3, "x": 1, "y": 2, "z": 3}
-"""Single letter -> its axis: principal moments, the angular velocity of an aircraft, and coordinates."""
+"""Letter without an index -> its axis: A is the principal moment about axis 1, p the roll rate, x a coordinate."""
 
 CYCLIC = ((1, 2, 3), (2, 3, 1), (3, 1, 2))
 """The orders of axes that keep right-handed axes right-handed; Euler's equations change signs under other orders."""
@@ -41,9 +41,9 @@ ANGLES = {*MIDDLE, *OUTER}
 def is_consistent(renaming: Sequence[tuple[str, str]], fixed: bool = False) -> bool:
     """Return whether pairs (known name, new name) agree on the axes: not so for (omega_1, omega_x) with (I_1, I_y).
 
-    Pairs also disagree if they join or split a quantity, exchange an initial with a final value, or exchange the middle
-    one of three Euler angles with an outer one. With ``fixed``, each axis keeps its number: 1 becomes 1 or x. Otherwise
-    the axes may be exchanged in a cycle: 1 to y, 2 to z and 3 to x.
+    Pairs also disagree if they give one name to two quantities or two names to one, exchange an initial with a final
+    value, or exchange the middle one of three Euler angles with an outer one. With ``fixed``, each axis keeps its
+    number: 1 becomes 1 or x. Otherwise the axes may be permuted in a cycle: 1 to y, 2 to z and 3 to x.
     """
     pairs = [_pair_of_quantities(known, new) for known, new in renaming]
     if len({*pairs}) != len({known for known, _ in pairs}) or len({*pairs}) != len({new for _, new in pairs}):
@@ -71,11 +71,11 @@ def _pair_of_quantities(known: str, new: str) -> tuple[str, str]:
 
 @cache
 def _orders(known: str, new: str) -> tuple[frozenset[tuple[int, ...]], frozenset[tuple[int, ...]]]:
-    """Return the cyclic exchanges of axes that give a symbol ``known`` the axes of another symbol ``new``.
+    """Return the cyclic permutations of axes that turn the axes of the symbol ``known`` into those of ``new``.
 
     The result is a pair of sets of tuples from CYCLIC, the second set for a transposed matrix. The tuple (2, 3, 1)
     replaces axis 1 by 2, 2 by 3 and 3 by 1: omega_1 becomes omega_2, and R_12 becomes R_23 or, transposed, R_32. If one
-    of the symbols has no axes, all exchanges are returned.
+    of the symbols has no axes, all three permutations are returned.
     """
     axes, own = axes_of(known), axes_of(new)
     moved_axes = {order: {order[axis - 1] if axis else 0 for axis in axes} for order in CYCLIC}
@@ -103,10 +103,11 @@ def _keeps_time_order(renaming: Mapping[str, str]) -> bool:
 
 
 def component(known: str, quantity: str) -> list[tuple[str, str]]:
-    """Return [("component_2", "H_y")] for ``known`` = "second component of .." and ``quantity`` = "H_y".
+    """Return a list of at most one pair, by which `is_consistent` compares the axes of a formula's name and a quantity.
 
-    A name with "(parallel-axis theorem), y axis" gives ("component_y", quantity). Other names, and a quantity without
-    an axis in its name, give [].
+    For ``known`` = "second component of .." and ``quantity`` = "H_y", return [("component_2", "H_y")]. A name with
+    "(parallel-axis theorem), y axis" gives ("component_y", quantity). Other names, and a quantity without an axis in
+    its name, give [].
     """
     # a moment of inertia by the parallel-axis theorem has an axis, too
     parallel = re.search(r"\(parallel-axis theorem\), ([xyz]) axis", known)

@@ -1,4 +1,7 @@
-"""Ways to pair the symbols of two formulas with equal fingerprints, the most plausible pairs first."""
+"""Ways to pair the symbols of two formulas that may be equal up to the names of symbols, the most plausible first.
+
+Such formulas have equal fingerprints: hashes of their values, which do not depend on the names.
+"""
 
 from collections.abc import Iterator, Mapping, Sequence
 from functools import lru_cache
@@ -14,9 +17,10 @@ from symrot.exact.printing import as_text
 __all__ = ["MOST_TRIES", "name_of", "pairings"]
 
 MOST_TRIES = 720
-"""The largest number of ways to pair the symbols of two formulas that are tried; also of each group with one signature.
+"""The largest number of ways to pair the symbols of two formulas that are tried.
 
-Only symbols with equal signatures, which :class:`Fingerprint` describes, can be paired.
+It also limits the ways to pair the symbols of one group. A group has the symbols with equal signatures, which
+:class:`Fingerprint` describes; only these can be paired with each other.
 """
 
 
@@ -31,8 +35,8 @@ def pairings(theirs: Fingerprint, own: Fingerprint, order: Sequence[int]) -> Ite
 
     ``theirs`` is the fingerprint of the known formula, ``own`` that of the claim's formula. A fingerprint has for each
     symbol a signature, numbers that do not depend on the symbol's name; only symbols with equal signatures are paired.
-    Yield nothing if that leaves symbols unpaired. ``order`` are indices of entries of the claim's formula, if this is a
-    matrix, in the order of the known formula's entries.
+    Yield nothing if that leaves symbols unpaired. For matrices, entry i of the known formula is compared with entry
+    ``order[i]`` of the claim's formula.
     """
     mine: dict[Values, list[Expr]] = {}
     for atom, row in zip(own.atoms, own.rows(order), strict=True):

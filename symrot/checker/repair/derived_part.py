@@ -51,9 +51,10 @@ def derived_part(claim: Claim, place: str) -> Node | None:
 
 
 def _scaled(claim: Claim, factors: Sequence[Node], matrix: Node) -> Node | None:
-    """Return the product of ``factors``, with new entries in ``matrix`` that make it equal to the right side.
+    """Return the product of ``factors``, the left side of the claim, changed so that it equals the right side.
 
-    None if no entries do.
+    The factor ``matrix`` gets new entries; a number among the factors may change too. Return None if ``matrix`` and
+    the right side differ in shape, or if ``diag`` would need an entry off the diagonal.
     """
     values, shape = flatten(claim.equation.right)
     if shape != flatten(claim.interpreter().read(matrix))[1]:

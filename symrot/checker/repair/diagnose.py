@@ -45,15 +45,16 @@ MOST_PROOFS = 10
 MOST_REPAIRS = 3
 
 MOST_EXPANDED = 1_000_000
-"""The largest number of products of terms for expanding the claim and all candidates.
+"""When the exact proofs for a claim and its possible repairs have multiplied more pairs of terms than this, no further
+proof is tried.
 
-A claim that takes more than a quarter of this number by itself gets no repairs.
+A claim whose own proof takes more than a quarter of this number gets no repairs.
 """
 
 TELLING = frozenset(FAULT_DESCRIPTIONS) - {"two_faults", "extra_term", "wrong_symbol", "missing_term"}
-"""Codes of faults that count as the probable fault of a claim if undoing the fault makes both sides the same formula.
+"""Codes of faults that are reported as a claim's probable fault if their correction makes both sides the same formula.
 
-Such an edit is not offered as a repair, because the edited claim, such as ``a == a``, says nothing.
+The corrected claim, such as ``a == a``, says nothing, and so is not offered as a repair.
 """
 
 AS_NEAR = 0.35
@@ -221,8 +222,8 @@ class _Search:
     def proven(self, candidates: Iterable[Candidate], most: int) -> list[Repair]:
         """Return at most ``most`` repairs: the first candidates that are proven to be true.
 
-        A candidate may also be true only in a range such as 0 <= x <= pi, unless the claim itself is "conditional". At
-        most MOST_PROOFS proofs are tried.
+        A candidate that is true only in a range such as 0 <= x <= pi is also a repair, with this range as a condition.
+        For a claim that is itself "conditional", it is no repair. At most MOST_PROOFS proofs are tried.
         """
         repairs: list[Repair] = []
         attempts = 0

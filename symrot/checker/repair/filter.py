@@ -49,7 +49,7 @@ class Candidate(NamedTuple):
 class NumericFilter:
     """A fast test of repairs: it evaluates the edited claim at points that obey the equations among the hypotheses.
 
-    After ``most_pieces`` evaluations, every test fails.
+    When about ``most_pieces`` nodes of formulas have been evaluated, every further test fails.
     """
 
     def __init__(self, claim: Claim, most_pieces: int = MOST_PIECES) -> None:
@@ -212,8 +212,9 @@ class NumericFilter:
     def holds(self, changes: Sequence[Change]) -> bool:
         """Return whether the claim after ``changes`` is true at the test points.
 
-        False also if there are no test points, if the budget of evaluations is spent, or if both sides have become
-        zero; but both may be zero if a side of the claim itself has no letters and functions, as in ``x == 0``.
+        Return False if there are no test points, if the budget of evaluations is spent, or if a side has no value. Two
+        sides that are zero count as equal only if a side of the claim had no letters and functions before the changes,
+        as in ``x == 0``.
         """
         if not self.points or not self.affordable():
             return False
@@ -228,7 +229,7 @@ class NumericFilter:
         return any(entries_of(left)) or not (is_nontrivial(self.left) and is_nontrivial(self.right))
 
     def differences(self, point: Point, changes: Sequence[Change]) -> list[float]:
-        """Return left minus right of an edited claim at a point, for each entry; 0 is a zero of every shape.
+        """Return left minus right of an edited claim at a point, for each entry; a side 0 may stand for a zero matrix.
 
         Raises
         ------

@@ -30,7 +30,7 @@ In ``a*b`` the places are a and b, which gives ``(a + m)*b`` and ``a*(b + m)``.
 """
 
 MOST_BRACKETS_OF_LARGE = 2
-"""Largest number of such places in a formula with at least ``LARGE`` nodes."""
+"""As MOST_BRACKETS, for a formula with at least ``LARGE`` nodes (symbols, numbers and operations)."""
 
 LARGE = 300
 
@@ -41,14 +41,14 @@ MOST_LETTERS = 240
 """The largest number of characters in a term that a repair may add to a side of a claim."""
 
 MOST_TERMS_READ, MOST_ROOTS_READ = 1000, 12
-"""Largest numbers of terms and of roots in the difference of the two sides, if a missing term is sought in it."""
+"""Largest numbers of terms and of roots in left side minus right side; a longer difference is not a missing term."""
 
 
 def missing_terms(numeric: NumericFilter) -> Iterator[Candidate]:
     """Yield repairs that add one missing term to each wrong entry of a side (to the whole side, if it is no matrix).
 
     The term is the exact difference of the two sides in the entry. If only one entry is wrong, repairs follow that add
-    the term, divided by the factor of a bracket, inside the bracket: ``a*(b + m)`` for ``a*b``.
+    a term to a part of the entry: if ``a*b`` lacks a*m, to the factor b, which gives ``a*(b + m)``.
     """
     equation = numeric.claim.equation
     (lefts, shape), (rights, other) = flatten(equation.left), flatten(equation.right)
@@ -104,7 +104,10 @@ def _whole(numeric: NumericFilter, place: str, lacking: Mapping[Path, Any]) -> I
 def _inside(
     numeric: NumericFilter, place: str, cell: Path, residual: Any, hypotheses: Sequence[Any]
 ) -> Iterator[Candidate]:
-    """Yield repairs that add one term inside a bracket of a wrong entry: ``a*(b + m)`` in place of ``a*b``."""
+    """Yield repairs that add one term m to a part of a wrong entry: ``a*(b + m)`` in place of ``a*b``.
+
+    ``cell`` is the path of the entry in the side ``place``, and ``residual`` is what the entry lacks, here a*m.
+    """
     interpreter = numeric.claim.interpreter()
     tree = numeric.tree_at(place)
     whole = at(tree, cell)

@@ -18,7 +18,10 @@ MOST_JOINED = 400
 """The largest number of pairs of edits that are tried, the cheapest first."""
 
 DIGITS = 8
-"""Number of decimals to which effects of edits are compared, in units of the largest number in the effect of a pair."""
+"""Number of decimals to which the effects of edits (changes of left - right, or of left/right) are compared.
+
+Before, they are divided by the largest number in the effect that two edits must have together.
+"""
 
 Values = tuple[float, ...]
 
@@ -106,8 +109,9 @@ def _quotients(numeric: NumericFilter, changes: Sequence[Change]) -> Effects:
 def _completing(effects: Effects, rest: Callable[[float, float], float]) -> Iterator[tuple[int, int]]:
     """Yield pairs of indices of two edits that together make both sides equal at the first test point.
 
-    ``effects`` is the result of `_differences` or `_quotients`. ``rest(w, e)`` is the effect that the second edit must
-    have if the first one has e and both together w: w - e for differences, w/e for quotients.
+    ``effects`` is the result of `_differences` or `_quotients`: the effect w that both edits must have together, and
+    the effect e of each edit. ``rest(w, e)`` is the effect that the other edit must have: w - e for differences, w/e
+    for quotients.
     """
     whole, single = effects
     scale = max(map(abs, whole), default=0.0)

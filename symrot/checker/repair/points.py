@@ -51,7 +51,7 @@ from symrot.kinematics.hamilton import hamilton
 __all__ = ["Point", "UndefinedValue", "agree", "entries_of", "points"]
 
 DERIVATIVES = 6
-"""Number of values that a test point has for a function of time: one for the function, five for its derivatives."""
+"""Number of values for a function of time at a test point: its own value and those of its derivatives up to order 5."""
 
 HEAVIEST = 3**5
 """Largest ``weight`` (cost of a multiplication) of a `Point` from which a derivative can be computed.
@@ -61,7 +61,10 @@ most six derivatives inside each other are possible.
 """
 
 GAUSS = {1: 20, 2: 18, 3: 16}
-"""Number of nested integrals, 3 for more -> number of nodes of Gauss-Legendre quadrature for each integral."""
+"""Number of nested integrals -> number of nodes of Gauss-Legendre quadrature for each of them.
+
+The value for 3 also holds for more than three integrals.
+"""
 
 
 # -- trees ------------------------------------------------------------------------------------------------------------
@@ -82,7 +85,8 @@ class Point:
     remembered : frozenset of int
         Identities (``id``) of the trees whose values are stored; these trees must live as long as the point.
     spent : list of int
-        A count of multiplications, for a budget; it is shared by all points made from this one.
+        One number, for a budget: how many nodes were evaluated, each counted with ``weight``, and large nodes more than
+        once. The list is shared by all points made from this one.
     weight : int
         The cost of multiplying two values, in float multiplications; each copy with dual numbers triples it.
     known : dict
@@ -133,7 +137,7 @@ class Point:
         """Return a copy of the point whose values are dual numbers; their slopes are derivatives by ``variable``.
 
         The variable is a symbol, ``f(t)`` or ``diff(f(t), t)``. Raise UndefinedValue if it has no value at the point,
-        or if the point's weight exceeds HEAVIEST.
+        or if derivatives inside each other have raised the point's ``weight`` above HEAVIEST.
         """
         order = 0
         inner = variable
@@ -224,7 +228,7 @@ def _list(point: Point, node: Node) -> Any:
 
 
 def _stacked(parts: Sequence[Any]) -> Rows:
-    """Return one column from numbers and columns: a quaternion from a scalar and a vector."""
+    """Return one column matrix with the numbers and columns ``parts`` below each other: a quaternion from (s, v)."""
     entries: list[Any] = []
     for part in parts:
         entries += [entry for (entry,) in needed(part, (None, 1))] if is_matrix(part) else [part]

@@ -145,9 +145,9 @@ def rotation_of_quaternion(*q: Any) -> Rows:
 
 
 def agree(left: Any, right: Any) -> list[bool] | None:
-    """Return, for each entry, whether two values agree to about eight digits or 1e-11; 0 is a zero of every shape.
+    """Return, for each entry, whether two values (numbers or matrices) agree to about eight digits or within 1e-11.
 
-    None if the shapes differ.
+    The number 0 is compared with a matrix as a zero matrix of the same shape. None if the shapes differ otherwise.
     """
     lefts, rights = entries_of(left), entries_of(right)
     if shape_of(left) != shape_of(right):

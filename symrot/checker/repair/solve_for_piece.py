@@ -37,10 +37,8 @@ The products are those of the symbols and functions alone; products with a brack
 """
 
 MOST_MATRICES, MOST_COLUMNS = 40, 5
-"""Largest number of matrices whose multiples are tried as a missing term, and largest number of vectors.
-
-The scalar products of two of these vectors are tried as factors.
-"""
+"""Largest number of matrices of a claim whose multiples are tried as a missing term of a matrix or vector, and largest
+number of named matrices or vectors of a claim whose scalar products in pairs are tried as factors."""
 
 LARGEST_RATIO = 60
 """Largest denominator of a rational number in a repair, such as 2/3 in a factor that was forgotten."""
@@ -57,7 +55,10 @@ Values = tuple[float, ...]
 
 @dataclass(frozen=True)
 class Entry:
-    """A product of symbols, functions, sums or terms of the claim, with its values at the test points."""
+    """A short product from a `Vocabulary`, with its values at the test points: a repair may insert it in the claim.
+
+    Each of the ``factors`` is a symbol, a function call, a bracketed sum, or a whole product or power of the claim.
+    """
 
     factors: tuple[Node, ...]
     values: Values
@@ -302,7 +303,7 @@ def _root(numeric: NumericFilter, point: Point, change: Sequence[Change], start:
 
 
 Correction = tuple[Node, tuple[str, float]]
-"""A new formula for a part, and the code and the cost of the fault that it corrects."""
+"""A new formula for a part of the claim, with (code, cost) of the fault that it corrects; rarer faults cost more."""
 
 
 def _corrections(
@@ -316,8 +317,8 @@ def _corrections(
 ) -> Iterator[Correction]:
     """Yield (formula, (code, cost) of the fault) for formulas with the values ``needed`` that may replace ``piece``.
 
-    ``values`` are the present values of the piece. ``is_term`` says whether it is a term of a sum, ``is_outer`` whether
-    it is a side of the claim, or a term or factor of a side.
+    ``piece`` is a part of the claim, and ``values`` are its present values. ``is_term`` says whether it is a term of a
+    sum, ``is_outer`` whether it is a side of the claim, or a term or factor of a side.
     """
     if all(abs(b) <= CLOSE * abs(a) for a, b in zip(values, needed, strict=True)):
         return  # the piece would have to vanish

@@ -22,7 +22,7 @@ WHOLE = (
 """Codes of the faults that usually change all values of a side or definition, such as a transposed rotation."""
 
 MOST_WHOLE = 14
-"""The largest number of edits that are tried as the first of two edits, each of which undoes a fault in ``WHOLE``."""
+"""The largest number of edits that undo a fault in ``WHOLE`` and are tried as the first of two edits of a claim."""
 
 MOST_EDITS = 3000
 """For each first edit: the largest number of second edits that are tried in one side or definition of the claim."""

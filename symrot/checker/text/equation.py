@@ -79,9 +79,9 @@ def _with_complex_repairs(claim: Claim, verdict: Verdict) -> Verdict:
 def _on_inertia_matrix(claim: Claim, verdict: Verdict) -> Verdict:
     """Return the verdict on an equation such as ``I = -m [r]^2``, where I may be an inertia tensor or the unit matrix.
 
-    ``verdict`` is the verdict for the unit matrix. If the verdict for an inertia tensor is neither "false" nor
-    "definition", return it. Otherwise return "definition" if the other side is a matrix or has a mass or an inertia,
-    and ``verdict`` if not. Return ``verdict`` also for an equation without such a side.
+    ``verdict`` is the verdict with I as the unit matrix. If one side is just the letter I, check the equation with I as
+    an inertia tensor, and return the new verdict unless it is "false" or "definition". In these two cases, return
+    "definition" if the other side is a matrix or has a mass or an inertia. In all other cases return ``verdict``.
     """
     sides = claim.relation[1:] if claim.relation else ()
     units = [side for side in sides if side.value == "eye"]
@@ -206,9 +206,9 @@ def _has_indices(claim: Claim) -> bool:
 def for_numbers(reading: Reading, part: tuple[Claim, Verdict], source: str) -> Verdict | None:
     """Return the verdict "conditional" on an equation that is false for Pauli's matrices and true for numbers sigma_x.
 
-    ``part`` is the equation as a claim about matrices, and its verdict. Return None for other equations, and for
-    equations in which no sum is multiplied or raised to a power: ``σ_x σ_y = σ_y σ_x`` would be trivial for numbers, so
-    its author means matrices.
+    ``part`` is the equation as a claim about matrices, and its verdict. Return None for other equations. Also return
+    None if no sum is multiplied or raised to a power: the author of ``σ_x σ_y = σ_y σ_x`` means matrices, as this would
+    be trivial for numbers.
     """
     claim, verdict = part
     link = reading.lines[0].links[0]

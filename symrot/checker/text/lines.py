@@ -95,9 +95,10 @@ def verdict_on_parts(
 def _with_fitting_line(
     claims: Sequence[Claim], lines: Sequence[tuple[str, Collection[str], Verdict]], notation: Notation, verdict: Verdict
 ) -> Verdict:
-    """Return ``verdict``, on lines for different bodies, frames or sequences, with an edit of one line as a repair.
+    """Return the verdict on lines that are known formulas for different bodies, frames or sequences.
 
-    After the edit all lines are for the same body, frame or sequence. Return ``verdict`` unchanged if there is none.
+    The returned verdict is ``verdict`` with a repair: the edit of one line after which all lines are for the same body,
+    frame or sequence. Return ``verdict`` unchanged if no such edit is found.
     """
     if len(lines) != len(claims) or len(lines) > MOST_LINES or any(claim.hypotheses for claim in claims):
         return verdict
@@ -121,10 +122,11 @@ def _with_fitting_line(
 
 
 def with_all_conditions(verdict: Verdict, conditions: Sequence[Sequence[str]], both_signs: bool) -> Verdict:
-    """Return ``verdict``, on several equations, with the conditions of all of them: "a > 0 or b > 0 and c > 0".
+    """Return ``verdict``, on several equations, with the conditions of all of them: "a > 0 and c > 0".
 
-    ``conditions`` has the alternatives for each conditional equation. If ``both_signs``, the two equations are those
-    with the upper and the lower sign of ±, and each keeps its own condition.
+    ``conditions`` has, for each conditional equation, its alternative conditions, which are joined by "or" in brackets.
+    If ``both_signs``, the two equations are those with the upper and the lower sign of ±, and the conditions
+    stay separate: "a > 0 for the upper sign".
     """
     texts = list(dict.fromkeys(" or ".join(alternatives) for alternatives in conditions))
     stated = {condition for alternatives in conditions for condition in alternatives}
@@ -132,16 +134,26 @@ def with_all_conditions(verdict: Verdict, conditions: Sequence[Sequence[str]], b
     if both_signs:
         required = tuple(f"{text} for the {word} sign" for text, word in zip(texts, ("upper", "lower"), strict=False))
     else:
-        required = tuple(conditions[0]) if len(texts) == 1 else (" and ".join(texts),)
+        required = tuple(conditions[0]) if len(texts) == 1 else (" and ".join(map(_bracketed, texts)),)
     return replace(verdict, requires=required, conditions=(*required, *others), diagnosis=Diagnosis("none", ""))
+
+
+def _bracketed(text: str) -> str:
+    """Return a condition in brackets if it has an "or" outside of brackets, so that "and" cannot split it."""
+    depth, outside = 0, []
+    for letter in text:
+        depth += (letter == "(") - (letter == ")")
+        outside.append(letter if not depth else "|")
+    return f"({text})" if " or " in "".join(outside) else text
 
 
 def _as_named_chain(line: Sequence[Claim], verdicts: Sequence[Verdict], notation: Notation) -> list[Verdict]:
     """Return the verdicts on the equations of a chain ``name = a = b``; the verdict on ``a = b`` may be replaced.
 
     If ``a = b`` is no identity, and a and b each have a letter that the other one lacks, the verdict on ``name = b``
-    replaces the verdict on ``a = b``. If b is a number and ``a = b`` is false in general, but a depends on letters as
-    in sin x = 1/2, its verdict becomes "definition". Chains that begin with no name keep their ``verdicts``.
+    replaces the verdict on ``a = b``. If b is a number, and ``a = b`` is false in general but a depends on letters, as
+    in sin x = 1/2, the verdict on ``a = b`` becomes "definition". Chains that begin with no name keep their
+    ``verdicts``.
     """
     named = named_formula(line[0]) if len(line) > 1 else None
     if named is None or line[0].relation is None or line[0].relation[1] != named.side:
@@ -168,7 +180,7 @@ def _as_named_chain(line: Sequence[Claim], verdicts: Sequence[Verdict], notation
 
 
 def _depends_on_letters(claim: Claim) -> bool:
-    """Return whether the value of a claim's left side depends on a letter, as that of sin²x + cos²x does not."""
+    """Return whether a claim's left side is a scalar whose value depends on a letter: False for sin²x + cos²x, or 1."""
     # if so, sin x = 1/2 in y = sin x = 1/2 is no error, but holds for certain x
     left = claim.equation.left
     return not is_matrix(left) and bool(normal_form(left).free_symbols)

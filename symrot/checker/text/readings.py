@@ -129,9 +129,9 @@ def _is_false_by_context(verdict: Verdict, stated: Context) -> bool:
 
 
 def _renames_a_rate(verdict: Verdict) -> bool:
-    """Return whether the claim is recognised only with its name x_prime as the rate of an angle in a known formula.
+    """Return whether each known formula that the claim matches has the rate of an angle where the claim has x_prime.
 
-    An example is psi_prime in place of dphi; a reading of the text in which ψ' is a rate is then more likely.
+    An example is psi_prime in the claim for dphi in the formula: more likely, the author means ψ' as a rate.
     """
     return all(
         any(own.startswith("d") and other.endswith("_prime") for own, other in known.mapping.items())
@@ -150,7 +150,7 @@ def names_of(reading: Reading) -> set[str]:
 
 
 def _on_reading(usual: Reading, reading: Reading, verdict: Verdict, notation: Notation) -> str:
-    """Return the sentence for a note that reports the verdict on ``reading``, a reading besides the ``usual`` one."""
+    """Return a sentence with the verdict on a second way to read the claim's text: ``reading`` instead of ``usual``."""
     places = reading.flipped or usual.flipped
     if isinstance(notation, TypedNotation):
         notation = replace(notation, plain=usual.plain or reading.plain)

@@ -19,12 +19,14 @@ AS_TYPED = ("degrees",)
 """Fault codes (`Repair.code`) of the repairs whose text is already in the notation of the claim's text."""
 
 CALLS_FOR_ARRAYS = ("qmul(", "eye(", "⊗", "\\otimes")
-"""Calls and signs: if a claim's text has none of them, its repairs are written without calls such as ``qmul``."""
+"""Notations of quaternion products and identity matrices: claims without any get repairs without ``qmul`` etc."""
 
 
 def as_typed_repairs(repairs: Sequence[Repair], claim: Claim, notation: Notation) -> tuple[Repair, ...]:
-    """Return ``repairs`` in the notation of the claim's text, each text once, without those that people would not
-    write.
+    """Return ``repairs`` in the notation of the claim's text, each text once.
+
+    Left out are repairs that people would not write, and repairs that lack a formula which the claim writes in a short
+    form.
     """
     typed = [
         repair if repair.code in AS_TYPED else in_notation(repair, claim, notation)
@@ -54,7 +56,11 @@ def in_notation(repair: Repair, claim: Claim, notation: Notation) -> Repair:
 
 
 def as_inequality(repair: Repair, claim: Claim, sign: str, notation: Notation) -> Repair:
-    """Return a repair of the equation ``claim`` as one of the inequality with ``sign``, in the notation of the text."""
+    """Return the repair of an inequality, in the notation of its text, from the repair of an equation.
+
+    ``claim`` is the inequality with == in place of its ``sign``, such as "<". A repair whose text is no equation is
+    returned unchanged.
+    """
     relation = relation_of(repair.text)
     if relation is None or relation[0] != "==" or claim.relation is None:
         return repair
@@ -63,7 +69,7 @@ def as_inequality(repair: Repair, claim: Claim, sign: str, notation: Notation) -
 
 
 def as_typed(source: str, written: Sequence[tuple[Node, Node]]) -> str:
-    """Return the text ``source`` of an equation with the short forms that the claim's text has for some formulas.
+    """Return the equation or inequality ``source`` with formulas replaced by short forms that the claim's text uses.
 
     ``written`` has pairs (formula, short form).
     """
@@ -85,10 +91,10 @@ def _keeps(repair: Repair, written: Sequence[tuple[Node, Node]]) -> bool:
 
 
 def _with_inverse(source: str, place: str, typed: str) -> str:
-    """Return the equation ``source`` with ``q**(-1)`` in place of q*/|q|^2, if this inverse is its side ``place``.
+    """Return the equation ``source`` with ``q**(-1)`` as its side ``place`` if this side is the inverse q*/|q|^2.
 
-    ``place`` is "left" or "right"; ``typed`` is the claim's text. Return ``source`` unchanged if the side is no
-    inverse, or if the text has no power -1.
+    ``place`` is "left" or "right". Return ``source`` unchanged if the side is no inverse, or if ``typed``, the claim's
+    text, does not write inverses as powers.
     """
     relation = relation_of(source)
     if relation is None or relation[0] != "==":

@@ -90,10 +90,11 @@ def _with_own_units(repair: Repair, measured: Measured, source: str) -> Repair:
 
 
 def beside_units(verdict: Verdict, source: str, decide: Callable[[str], Verdict]) -> Verdict:
-    """Return the verdict "definition", no identity, on a text with letters and a unit, such as ``F = m a = 6 N``.
+    """Return the verdict "definition" on an equation with letters and a unit, such as ``F = m a = 6 N``.
 
-    Return "false" if the end of the text has only numbers with units and is false, as in ``F = m a = 2 N = 3 N``.
-    Return ``verdict``, the verdict on the text so far, for other texts. ``decide`` returns the verdict on a text.
+    The verdict is "false" if the end of the text has only numbers with units and is false, as in
+    ``F = m a = 2 N = 3 N``. For other texts, the argument ``verdict`` on ``source`` is returned. ``decide`` returns the
+    verdict on a text.
     """
     unit = "" if verdict.recognised_as else unit_beside_letters(source)
     # an end such as 2 kg * 3 m/s^2 = 6 N is decided by itself; if it is false, the text is false

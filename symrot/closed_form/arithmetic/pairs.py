@@ -32,7 +32,7 @@ SMALLEST = 1e-205
 """Smallest moment of inertia that may define a motion, kg m^2."""
 
 GRID = 2.0**-33
-"""Unit, in last bits of hi, to which lo is rounded in the components hi + lo of an attitude.
+"""Step, in units in the last place of hi, to whose multiples lo is rounded in the components hi + lo of an attitude.
 
 hi is the double nearest to the component. Because of the rounding, a batch of motions gives the same doubles as single
 motions.
@@ -141,8 +141,10 @@ def numbers(what: str, values: Sequence[Number], length: int, least: float = -LA
 
 
 def _moderate(value: Fraction, least: float) -> bool:
-    """Return whether a fraction is certainly within the bounds ``least`` and LARGEST of :func:`numbers`."""
-    # a fast comparison of bit lengths; if it fails, the caller compares exactly
+    """Return whether bit lengths alone show that a fraction is at least ``least``, and at most LARGEST in size.
+
+    If not, :func:`numbers` compares exactly. The fraction may then still lie within these bounds.
+    """
     top, bottom = value.as_integer_ratio()
     size = top.bit_length() - bottom.bit_length()  # the exponent of the next power of two, or one more
     return size < _BITS and (least < 0 or (top > 0 and size > -_BITS))

@@ -131,10 +131,10 @@ class Turning:
         return self._rate[0] * t * (1.0 + x * series) + self._push[0] * t * t * series
 
     def _near(self, t: Floats) -> Floats:
-        """Return ``factor`` times the angle of rotation, in revolutions modulo 1, at times near the start.
+        """Return the angle of rotation times the constructor's ``factor``, in revolutions modulo 1, near the start.
 
-        If ``|decay t| <= dd.NEAR``, the power series of (exp(x) - 1 - x)/x^2 is accurate; it is summed in sums of two
-        doubles.
+        At times with ``|decay t| <= dd.NEAR``, the power series of (exp(x) - 1 - x)/x^2 is accurate; it is evaluated in
+        double-double numbers.
         """
         time = t, np.zeros_like(t)
         x = dd.multiply(time, self._decay)
@@ -144,9 +144,10 @@ class Turning:
         return _less_whole_turns(dd.add(dd.multiply(dd.multiply(time, self._rate), first), pushed))
 
     def _far(self, t: Floats) -> Floats:
-        """Return ``factor`` times the angle of rotation, in revolutions modulo 1, at times far from the start.
+        """Return the angle of rotation times the constructor's ``factor``, in revolutions modulo 1, at late times.
 
-        If ``|decay t| > dd.NEAR``, the angle is computed, in sums of two doubles, as a steady plus a transient part.
+        These are times with ``|decay t| > dd.NEAR``. The steady part of the angle, linear in t, and the transient part
+        are computed in double-double numbers and added.
         """
         # (push/decay) t + (rate - push/decay) (1 - exp(x))/decay, whose parts would cancel at smaller x
         time = t, np.zeros_like(t)
@@ -160,8 +161,8 @@ class Turning:
     def _integers(self, bits: int) -> tuple[int, int, int, int]:
         """Return the constants (final, rest, decay, ln 2) as integers with ``bits`` bits after the binary point.
 
-        With damping, ``factor`` times the angle of rotation is final*t + rest*(1 - exp(-decay*t)) revolutions. Without
-        damping it is final*t + rest*t^2. ln 2, for the exponential, has 16 bits more (``_GUARD``).
+        The angle of rotation, times the constructor's ``factor``, is final*t + rest*(1 - exp(-decay*t)) revolutions
+        with damping, and final*t + rest*t^2 without. The exponential needs ln 2, which has 16 bits more (``_GUARD``).
         """
         if bits not in self._scaled:
             from mpmath import mp
@@ -179,10 +180,10 @@ class Turning:
         return self._scaled[bits]
 
     def _exactly(self, t: float) -> float:
-        """Return ``factor`` times the angle of rotation at the time t, s, in revolutions from -1/2 to 1/2.
+        """Return the angle of rotation at the time t, s, times the constructor's ``factor``, in revolutions modulo 1.
 
-        It is computed in integers and rounded once. InputError is raised if -decay*t exceeds 1500: the angular velocity
-        is then out of the range of doubles.
+        The result, from -1/2 to 1/2, is computed in integers and rounded once. InputError is raised if -decay*t exceeds
+        1500: the angular velocity is then out of the range of doubles.
         """
         top, bottom = t.as_integer_ratio()
         growth = max(0.0, self._decay[0] * t)  # each factor 2 of the exponential costs one bit of the other terms

@@ -159,10 +159,11 @@ class Constants:
         ]  # fmt: skip
 
     def _turning(self, transverse: bool) -> tuple[int, int, list[float]]:
-        """Return constants (turn, bits, fixed) of half the angle of rotation or, if ``transverse``, of the angle lag.
+        """Return constants (turn, bits, fixed) of half the angle of rotation or, if ``transverse``, of another angle.
 
-        If the body rotates by 1 rad about the driven axis, the angle changes by ``turn/2**bits`` revolutions. ``fixed``
-        are the numbers for C that do not depend on the initial state: 3, or 8 without damping.
+        The other angle is that by which the transverse angular velocity rotates in the body. If the body rotates by
+        1 rad about the driven axis, the angle changes by ``turn/2**bits`` revolutions. ``fixed`` are the numbers for C
+        that do not depend on the initial state: 3, or 8 without damping.
         """
         turn, bits = _HALF
         if transverse:

@@ -130,7 +130,7 @@ class FreeRigidBody:
 def _differences(moments: Sequence[Number], omega: Sequence[Number]) -> list[float]:
     """Return I2 - I3, I3 - I1, I1 - I2 of a free body and |L|^2 - 2 T I_mid of its motion as a list hi, lo, hi, lo, ..
 
-    The last number is scaled as by :class:`Defect`.
+    |L|^2 - 2 T I_mid, the last pair, is divided by (largest moment times largest rate)^2 (see :class:`Defect`).
     """
     # exactly, since differences of doubles would lose digits
     integers, shared = over_common_denominator(moments)

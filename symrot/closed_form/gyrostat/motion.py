@@ -47,7 +47,8 @@ def motion(
 def starts(inertia: Sequence[Number], rotor: Sequence[Number]) -> Callable[[Initial], ExactMotion]:
     """Return a function from an initial state to the motion of one gyrostat (a body with a rotor).
 
-    ``inertia`` and ``rotor`` are as for :func:`motion`.
+    ``inertia`` are the principal moments of body and rotor together, kg m^2; ``rotor`` is the constant angular momentum
+    of the rotor relative to the body, kg m^2/s, along one principal axis, or zero.
     """
     body = Gyrostat(inertia, rotor)
     return lambda start: body.motion(start.omega_b, start.quaternion)

@@ -1,6 +1,7 @@
-"""The motion of a free body by mpmath and NumPy, without a C compiler; formulas of :file:`free_body.h`.
+"""The motion of a free body, computed by mpmath and NumPy without a C compiler.
 
-The defect of a motion, |L|^2 - 2 T I_mid, is explained in :mod:`symrot.closed_form.free_body.motion`.
+The formulas are those of :file:`free_body.h`. The defect of a motion is |L|^2 - 2 T I_mid, where L is the angular
+momentum, T the kinetic energy and I_mid the middle moment of inertia.
 """
 
 from collections.abc import Sequence
@@ -194,10 +195,11 @@ class PortableFreeBody:
             quaternion[:] = (x / np.sqrt(2.0 * p0 * (re * re + im * im))[:, None]) @ self.attitude.T
 
     def _sums(self, t: Floats) -> tuple[Any, Any, Floats]:
-        """Return (cn, sn, dn), each times its amplitude, (re, im), and a phase in half revolutions, at the times t.
+        """Return the tuple ((cn, sn, dn), (re, im), phase), each entry at the times t.
 
-        re and im are the real and imaginary part of a theta series. The phase is that of the theta functions' argument,
-        reduced by a whole number of half revolutions; it is 0 in the regimes circular and separatrix.
+        The elliptic functions cn, sn and dn are multiplied by their amplitudes. re and im are the real and imaginary
+        part of a theta series. The phase is that of the theta functions' argument in half revolutions, without the
+        whole ones; it is 0 if ``regime`` is "circular" or "separatrix".
         """
         # cn, sn and dn give the angular velocity; re, im and the phase the attitude
         if self.regime == "circular":
@@ -235,8 +237,8 @@ class PortableFreeBody:
 def _differences(inertia: list[float], omega: list[float], w: list[Any]) -> tuple[list[Any], Any]:
     """Return (differences, defect): [I2 - I3, I3 - I1, I1 - I2], and |L|^2 - 2 T I_mid, as mpmath numbers.
 
-    ``inertia`` and ``omega`` are lists hi, lo, hi, lo, .. of doubles, along the principal axes. ``w`` are the same
-    components of omega in another unit, with zeros for negligible ones, which the defect then leaves out too.
+    ``inertia`` and ``omega`` are lists hi, lo, hi, lo, .. of doubles, along the principal axes. The defect leaves out
+    the components of omega that are zero in ``w``: omega in another unit, with negligible components set to zero.
     """
     moments = [Fraction(high) + Fraction(low) for high, low in zip(inertia[::2], inertia[1::2], strict=True)]
     rates = [Fraction(high) + Fraction(low) for high, low in zip(omega[::2], omega[1::2], strict=True)]
@@ -254,9 +256,11 @@ def _rounded(x: Fraction) -> Any:
 def _canonical(
     moments: list[Any], w: list[Any], differences: list[Any], defect: Any
 ) -> tuple[list[int], list[int], int]:
-    """Return the indices of the principal axes that the formulas call e1, e2, e3, their signs, and the sign of I3 - I2.
+    """Return (axes, signs, sign of I3 - I2) for which the formulas of the motion hold.
 
-    The formulas need I2 between I1 and I3.
+    ``axes`` are the indices of the principal axes that :file:`free_body.h` calls e1, e2, e3, so that I2 lies between I1
+    and I3. ``signs`` are 1 or -1 for each of them. ``w`` is the angular velocity; for ``differences`` and ``defect``
+    see :func:`_differences`.
     """
     above = [differences[2] >= 0, differences[0] >= 0, differences[1] >= 0]  # I_i >= I_(i+1)
     largest = 0 if above[0] and not above[2] else 1 if above[1] else 2

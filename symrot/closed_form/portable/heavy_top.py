@@ -158,16 +158,17 @@ class PortableHeavyTop:
         return numerators, kappas, leads, speed, v, below
 
     def _functions(self, i: int, place: Any) -> tuple[list[Any], list[Any], list[Any], list[Any]]:
-        """Return the functions in the theta series of a Cayley-Klein parameter at ``place``, the argument z or v.
+        """Return the functions in the theta series of a Cayley-Klein parameter, at the argument ``place``.
 
-        i = 0 means alpha = q0 + i q3, i = 1 means beta = q1 + i q2. The four lists are the functions in the series of
-        the real part and of the imaginary part, then their derivatives: for alpha in the regime circular sin(n z),
-        cos(n z), n cos(n z) and -n sin(n z) for n = 1, 3, 5, ..
+        i = 0 means alpha = q0 + i q3, i = 1 means beta = q1 + i q2. The argument is an angle z if ``regime`` is
+        "circular", otherwise v with z = i v. The four lists are the functions in the series of the real part and of the
+        imaginary part, then their derivatives. For alpha and an angle z they are sin(n z), cos(n z), n cos(n z) and
+        -n sin(n z) with n = 1, 3, 5, ..
         """
         odd = (
             [2 * n + 1 for n in range(TERMS)] if self.regime == "circular" or i == 0 else [2 * n for n in range(TERMS)]
         )
-        # place is an angle z, the terms are sin(n z) and cos(n z)
+        # the terms are sin(n z) and cos(n z)
         if self.regime == "circular":
             sines, cosines = [mp.sin(o * place) for o in odd], [mp.cos(o * place) for o in odd]
             up, down = (
@@ -175,7 +176,7 @@ class PortableHeavyTop:
                 [-o * x for o, x in zip(odd, sines, strict=True)],
             )
             return (sines, cosines, up, down) if i == 0 else (cosines, sines, down, up)
-        # place is v with z = i v, the terms are sinh(n v) and cosh(n v) times powers of the nome
+        # the terms are sinh(n v) and cosh(n v) times powers of the nome
         weights = self._weights(i)
         sines = [x * mp.sinh(o * place) for x, o in zip(weights, odd, strict=True)]
         cosines = [x * mp.cosh(o * place) for x, o in zip(weights, odd, strict=True)]

@@ -103,8 +103,8 @@ class Phase(NamedTuple):
     def argument_once(self, t: Floats) -> tuple[Floats, Floats, Floats]:
         """Return the tuple (0, 1, phase), each an array over the times ``t``, for motions that are not periodic.
 
-        It replaces :meth:`argument` on the separatrix: the rest is 0, the sign 1, and the argument is the whole phase,
-        clipped to -LARGEST .. LARGEST.
+        It replaces :meth:`argument` on the separatrix, where no half revolutions are removed: the third array is the
+        whole phase, clipped to -LARGEST .. LARGEST.
         """
         return np.zeros_like(t), np.ones_like(t), np.clip(self.whole(t), -LARGEST, LARGEST)
 

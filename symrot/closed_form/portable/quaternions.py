@@ -1,4 +1,4 @@
-"""Quaternions and changes of axes with arrays and numbers of any precision; formulas of :file:`series.h`."""
+"""Quaternions and changes of axes with arrays and numbers of any precision, by the formulas of :file:`series.h`."""
 
 from collections.abc import Sequence
 from fractions import Fraction

@@ -58,8 +58,8 @@ def _circle(turns: dd.Pair) -> tuple[Floats, Floats]:
 class PortableSpinUp:
     """The motion of a symmetric body driven about its axis, from its constants and a table of Taylor polynomials.
 
-    The polynomials give the attitude near resonance (axial rate Omega = 0 in the rotating axes). ``table`` may be None
-    if no sample is near resonance.
+    The polynomials give the attitude near resonance: the time at which the axial rate is zero, in axes that rotate with
+    the transverse angular velocity. ``table`` may be None if no sample is near resonance.
     """
 
     def __init__(self, constants: Sequence[float], table: Floats | None) -> None:

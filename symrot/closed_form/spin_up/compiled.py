@@ -15,7 +15,7 @@ from symrot.errors import CompilerError
 __all__ = ["TABLE", "Compiled", "functions", "limits"]
 
 TABLE = int(spin_up_series.NEAR) * PIECES * (DEGREE + 1) * 4
-"""Number of doubles in the table of Taylor polynomials by which attitudes near resonance are computed."""
+"""Number of doubles in a motion's table of Taylor polynomials, for attitudes near resonance (axial rate Omega = 0)."""
 
 _LACKING, _LOST = 1, 2  # status of samples that could not be computed, see spin_up.h
 
@@ -31,8 +31,8 @@ class _Functions(NamedTuple):
 def limits() -> tuple[float, float, float]:
     """Return (NEAR, WIDE, MOST) of :mod:`symrot.closed_form.spin_up.series`, as arguments for C.
 
-    NEAR and WIDE bound the scaled time and kappa from which on the asymptotic series are accurate; MOST is the largest
-    angle of rotation, rad, for double-double numbers.
+    The asymptotic series of the attitude are accurate for scaled times Omega/sqrt(s) from NEAR on and for
+    kappa = W/sqrt(s) from WIDE on (see there). MOST is the largest angle of rotation, rad, for double-double numbers.
     """
     return spin_up_series.NEAR, spin_up_series.WIDE, spin_up_series.MOST
 
@@ -86,10 +86,10 @@ class Compiled:
         self.longest: float = constants[1] / constants[0]
 
     def _prepared(self, table: Floats | None) -> tuple[Any, int, Floats | None]:
-        """Return (constants, address, table): the motion's constants that C computes, as a ctypes array; its address.
+        """Compute the motion's constants in C, and return (constants as a ctypes array, address of the array, table).
 
-        ``table`` is the argument itself: None, or an array of ``TABLE`` doubles, which C fills with the Taylor
-        polynomials for samples near resonance (axial rate Omega = 0).
+        ``table`` is the argument: None, or an array of ``TABLE`` doubles, which C fills with the Taylor polynomials for
+        samples near resonance (axial rate Omega = 0).
         """
         bound = functions()
         constants = bound.record()

@@ -1,8 +1,9 @@
 """A symmetric body under a constant torque about its axis, in integer arithmetic, for any number of revolutions.
 
-The attitude is a product of rotations far before, near and far after resonance (see
-:mod:`symrot.closed_form.spin_up.motion`). The module computes the samples with too many revolutions for double-double
-numbers and, without a C compiler, the constants for NumPy.
+At resonance, the axial rate Omega is zero in axes that rotate with the transverse angular velocity. The attitude is a
+product of rotations far before, near and far after resonance (see :mod:`symrot.closed_form.spin_up.motion`). The module
+computes the samples with too many revolutions for double-double numbers and, without a C compiler, the constants for
+NumPy.
 
 The formulas are in :file:`spin_up.h`. Proof: ``derivations/driven_rotation.md``.
 """
@@ -104,8 +105,11 @@ class Integers:
 
     @staticmethod
     def _body_axes(axis: int, sign: int, first: Fraction, second: Fraction) -> Quaternion:
-        """Return the quaternion of the rotation from the axes e1, e2, e3 of the formulas to the axes of the body."""
-        # e3 points along the torque, e1 along the transverse angular velocity at the start
+        """Return the quaternion of the rotation from the axes e1, e2, e3 of the motion's formulas to those of the body.
+
+        e3 points along the torque: along the body axis ``axis``, times ``sign``. e1 points along the transverse angular
+        velocity at the start, with the components ``first`` and ``second`` along the next two body axes.
+        """
         columns = [[Fraction(0)] * 3 for _ in range(3)]
         columns[0][axis - 2], columns[0][axis - 1] = first, second
         columns[1][axis - 2], columns[1][axis - 1] = -sign * second, sign * first
@@ -131,7 +135,7 @@ class Integers:
 
     @cached_property
     def _resonance(self) -> Quaternion:
-        """The rotation of the body from the start to resonance (Omega = 0), as a quaternion in units of 2^-FIXED."""
+        """The rotation from the start to resonance (the axial rate Omega is 0), a quaternion in units of 2^-FIXED."""
         side, sweep = self._side(self._start), self._sweep
         if not side:
             return conjugate(self._near.quaternion(self._x(self._start)))
@@ -140,11 +144,11 @@ class Integers:
         return product(leaving, conjugate(self._near.quaternion(Fraction(side * int(NEAR)))))
 
     def _begin(self, side: int) -> tuple[Fraction, Fraction, Quaternion]:
-        """Return (time, Omega, rotation) from which the asymptotic series before or after resonance are applied.
+        """Return (time, Omega, rotation) where the asymptotic series before or after resonance begin to be used.
 
-        ``side`` is -1 before resonance (axial rate Omega < 0) and 1 after it. Omega is the axial rate at this time, and
-        the rotation that of the body from the start to this time. If the motion starts on this side of resonance, they
-        are 0, the initial axial rate, and the identity.
+        ``side`` is -1 before resonance (axial rate Omega < 0) and 1 after it. Omega is the axial rate at this time; the
+        rotation takes the body from its attitude at the start to its attitude at this time. For a motion that starts on
+        this side of resonance, the result is 0, the initial axial rate, and the identity.
         """
         if self._side(self._start) == side:
             return Fraction(0), self._start, ONE

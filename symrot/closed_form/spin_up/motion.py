@@ -129,7 +129,8 @@ def motion(
 def starts(inertia: Sequence[Number], axis: int, torque: Number) -> Callable[[Initial], SpinUp]:
     """Return a function from an initial state to the motion of one driven body.
 
-    The arguments are those of :func:`motion`.
+    ``inertia`` are the principal moments, kg m^2; ``torque``, N m, acts about the principal axis with the index
+    ``axis``.
     """
     body = SpunBody(inertia, axis, torque)
     return lambda start: body.motion(start.omega_b, start.quaternion)

@@ -132,9 +132,10 @@ class Sweep:
         return product(turn, fixed(number.unit((m3, -m2, m1, Fraction(0)))))
 
     def angle(self, start: Fraction, time: Fraction) -> Fraction:
-        """Return the angle, rad, by which the body rotates about the vector n in ``time`` s.
+        """Return the angle, rad, by which the body rotates in ``time`` s about the vector n of :meth:`axes`.
 
-        ``start`` is the axial rate, rad/s, at the beginning of this time.
+        n is fixed in space, near the direction of the angular velocity. ``start`` is the axial rate, rad/s, at the
+        beginning of this time.
         """
         omega = start + self.s * time
         here, there, product = self.speed(omega), self.speed(start), rounded(omega * start)

@@ -96,7 +96,10 @@ class Near:
         return q0, sign * q1, sign * q2, q3
 
     def table(self) -> Floats:
-        """Return Taylor coefficients as doubles: ``table[i, n, k]`` for interval i of x, power n, component k."""
+        """Return the Taylor coefficients of the attitude as doubles, an array ``table[i, n, k]``.
+
+        i is an interval of the scaled time x, n a power, and k a component q0 to q3.
+        """
         # powers of the distance from the middle of the interval
         one = 1 << FIXED
         return np.array(

@@ -25,15 +25,17 @@ from symrot.closed_form.build import Floats
 __all__ = ["DEGREE", "MOST", "NEAR", "WIDE", "Series", "series"]
 
 NEAR = 10.0
-"""Scaled time x = Omega/sqrt(s) from which on the asymptotic series are accurate for every transverse angular velocity.
+"""Ratio x = Omega/sqrt(s) from which on the asymptotic series are accurate for every transverse angular velocity.
 
-Omega is the axial rate, which is zero at resonance, and s the rate at which Omega grows.
+Omega is the axial rate, which is zero at resonance, and s the rate at which Omega grows. x is also the time after
+resonance in units of 1/sqrt(s), the scaled time.
 """
 
 WIDE = 9.0
-"""Value of kappa = W/sqrt(s) from which on the asymptotic series are accurate at every scaled time, even at resonance.
+"""Value of kappa = W/sqrt(s) from which on the asymptotic series are accurate at all times.
 
-W is the transverse angular velocity, and s the rate at which the axial rate grows.
+That includes resonance, the time at which the axial rate is zero. W is the transverse angular velocity, and s the rate
+at which the axial rate grows.
 """
 
 MOST = 1e13
@@ -48,11 +50,12 @@ _TERMS = 32  # powers of kappa^2 v that are used where kappa^2 v <= _SMALL
 
 
 class Series(NamedTuple):
-    """Three polynomials in y in place of the asymptotic series, as coefficients, lowest power first.
+    """Three polynomials that replace the asymptotic series of a driven body, as coefficients, lowest power first.
 
-    The body rotates about a vector n, fixed in space and near the direction of the angular velocity (kappa, 0, x).
-    ``g`` and ``c`` give the components of n normal to the angular velocity; ``e`` gives delta, the angle of rotation
-    minus the integral of r = sqrt(kappa^2 + x^2). y is radius2/r^2; the polynomials hold if r^2 is at least radius2.
+    The body rotates about a vector n, fixed in space and near the direction of the angular velocity (kappa, 0, x), of
+    the size r. The polynomials ``g`` and ``c`` give the components of n normal to the angular velocity; ``e`` gives
+    delta, the angle of rotation minus the integral of r. Their variable is y = radius2/r^2, from 0 to 1; radius2 is
+    explained at the top of the module.
     """
 
     # whether kappa is at least WIDE: the series are then accurate at every x, otherwise for x from NEAR on
@@ -94,10 +97,10 @@ def _first(share: float, v: float) -> Floats:
 
 
 def _excess(share: float, v: float, h: Floats) -> Floats:
-    """Return e at the values of y in :func:`_nodes`: (x/r) e is delta, the angle of rotation minus the integral of r.
+    """Return the values of e, for which (x/r) e = delta, at the values of y = radius2/r^2 in :func:`_nodes`.
 
-    ``share`` is kappa^2/radius2, and ``v`` is 1/radius2. ``h`` are the coefficients of the polynomial in
-    y = radius2/r^2 with ``d delta/dx = kappa^2 h/r^5``, where r^2 = kappa^2 + x^2.
+    delta is the angle of rotation about n minus the integral of r (see :class:`Series`). ``share`` is kappa^2/radius2,
+    and ``v`` is 1/radius2. ``h`` are the coefficients of the polynomial in y with ``d delta/dx = kappa^2 h/r^5``.
     """
     powers = _nodes()[1]
     if share >= _SMALL:  # from x = 0

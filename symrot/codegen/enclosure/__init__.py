@@ -1,1 +1,1 @@
-"""Enclosures of right-hand sides: bounds, and their C code, for terms in which a step could miss a pulse."""
+"""Enclosures of right-hand sides: bounds, in C, of the terms whose pulses (short changes) a step could miss."""

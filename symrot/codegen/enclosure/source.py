@@ -86,10 +86,10 @@ def enclosure_definitions(enclosure: Enclosure | None, order: int, edges: Sequen
 
 
 def rounding_source(program: Program) -> str:
-    """Return C code that bounds the rounding errors of a program's rates in formulas of t.
+    """Return C code that bounds the errors of a program's rates from the rounding of formulas of t in them.
 
-    The code defines ``SYMROT_ROUNDS`` 1 and the function ``symrot_roundings`` if such errors may be large: the narrow
-    pulse ``w/((t**2 - 25)**2 + w**2)`` is deformed by the rounding of its phase ``t**2 - 25``.
+    The narrow pulse ``w/((t**2 - 25)**2 + w**2)`` is deformed by the rounding of its phase ``t**2 - 25``. Where such
+    errors may be large, the code defines the function ``symrot_roundings``, and ``SYMROT_ROUNDS`` as 1 (otherwise 0).
     """
     try:
         whole = enclosure(recurrences(program))
@@ -115,10 +115,10 @@ def rounding_source(program: Program) -> str:
 
 
 def _rounded_disc(system: Recurrences, number: int, places: Mapping[str, str], linear: Mapping[int, bool]) -> str:
-    """Return the C expression of a disc around the computed value of a quantity that contains the exact value.
+    """Return the C expression of a disc that contains a quantity's exact value; its centre is the computed value.
 
     ``number`` is the index of the quantity in ``system.series``. ``linear`` has the indices of the quantities that
-    depend on t alone, each with whether it is linear in t.
+    depend on t alone, each with whether it is linear in t. ``places`` maps the name of a parameter to C.
     """
     # the low part of the time is added to sums, and to the phases of the rule clock
     series, disc = system.series[number], _disc(system, number, places)
@@ -140,9 +140,10 @@ def _rounded_disc(system: Recurrences, number: int, places: Mapping[str, str], l
 
 
 def _radii(enclosure: Enclosure, places: Mapping[str, str]) -> list[str]:
-    """Return C statements that compute how far each rate may deviate from a constant, and set ``deviation`` in C to it.
+    """Return C statements that set ``deviation[i]`` to a bound of how far rate i deviates from a constant in a step.
 
-    For each rate it is the sum of its terms' absolute weights times the radii of the discs that contain their values.
+    The bound is the sum, over the terms of the rate in ``enclosure``, of the absolute weight times the radius of the
+    disc that contains the values of the term.
     """
     return [
         f"deviation[{state}] = "
@@ -164,8 +165,9 @@ def _disc(system: Recurrences, number: int, places: Mapping[str, str]) -> str:
     """Return the C expression of a disc that contains the values of one quantity near the start of a step.
 
     ``number`` is the index of the quantity in ``system.series``. The values are those at complex times within ``reach``
-    of t, for states within ``radius`` of y, all variables of the C code. For the square of quantity 2, whose disc is
-    d2, the expression is ``symrot_disc_square(d2)``. ``places`` maps the name of a parameter to C, such as ``p[1]``.
+    of t, for states within ``radius`` of y; t, reach, y and radius are variables of the C code. For the square of
+    quantity 2, whose disc is d2, the expression is ``symrot_disc_square(d2)``. ``places`` maps the name of a parameter
+    to C, such as ``p[1]``.
     """
     series = system.series[number]
     own = [f"d{operand}" for operand in value_operands(series)]

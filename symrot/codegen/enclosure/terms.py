@@ -1,8 +1,8 @@
 """Selection of the terms of the rates dy/dt that must be bounded, because a step may miss a pulse in them.
 
-A stepper evaluates the rates only at some points and misses a pulse between them. Bounds over complex discs of times
-and states notice it, see :file:`propagation/enclosures/disc.h`. Polynomials of low degree vary slowly and need no
-bounds. Standard library only.
+A pulse is a short change of the rates. A stepper evaluates the rates only at some points and misses a pulse between
+them; bounds over complex discs of times and states reveal the pulse, see :file:`propagation/enclosures/disc.h`.
+Polynomials of low degree vary slowly and need no bounds. Standard library only.
 """
 
 from collections.abc import Sequence
@@ -46,7 +46,7 @@ def value_operands(series: Series) -> tuple[int, ...]:
 
 
 def enclosure(system: Recurrences) -> Enclosure | None:
-    """Return the terms of the rates dy/dt of ``system`` in which a step may miss a pulse.
+    """Select the terms of the rates dy/dt of ``system`` in which a step may miss a pulse (a short change).
 
     The result is None if all terms are polynomials of low degree.
     """

@@ -16,7 +16,10 @@ __all__ = ["Operation", "Tape", "tape_of"]
 
 
 class Operation(NamedTuple):
-    """One entry of a tape, the list of a program's single operations: an operation, a call, a number, or an input."""
+    """One entry of a tape: an arithmetic operation, a function call, a number, or an input of a program.
+
+    A tape lists such entries in the order of computation.
+    """
 
     # + - * / neg, the name of a function such as sin, number or symbol
     kind: str

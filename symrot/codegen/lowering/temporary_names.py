@@ -44,8 +44,8 @@ class _Product:
     def name(self) -> str | None:
         """Return the name of this product: ``two_q1_q2`` for ``2*q1*q2``, ``inv_sin_theta`` for ``1/sin_theta``.
 
-        ``a/7`` is ``a_over_7``. The result is None for a mere number, for ``1/(7*a)``, and for any other coefficient
-        without a word in ``WORDS``, such as 7.
+        ``a/7`` is ``a_over_7``. The result is None for a mere number, for ``1/(7*a)``, and for ``7*a``, since 7 is
+        neither in ``WORDS`` nor 1 over a whole number.
         """
         size = abs(self.coefficient)
         divisor = [str(size.denominator)] if size.numerator == 1 and size not in WORDS else []

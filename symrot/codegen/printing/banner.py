@@ -38,7 +38,7 @@ class Description:
 
 
 def _domain(domain: str) -> list[str]:
-    """Return the lines that state the domain: one, unless it is very long."""
+    """Return the lines of a head comment that state for which inputs a kernel is valid: one line, unless very long."""
     line = f"Domain: {domain}."
     return [line] if len(line) <= LONGEST else wrap(line, WIDTH, subsequent_indent="    ")
 

@@ -52,9 +52,10 @@ class Real:
 
     @cached_property
     def near_functions(self) -> dict[str, str]:
-        """The C names of the functions of ``symrot_math.h`` by which batches replace others: ``sin`` -> ``symrot_sin``.
+        """The C name of each function in loops over many samples, without branches: ``sin`` -> ``symrot_sin``.
 
-        They are valid for moderate angles only. Functions without such a replacement have the names in ``functions``.
+        Such versions, in ``symrot_math.h`` or printed with the kernel (``symrot_near_sinc``), are valid for moderate
+        angles only. A function without such a version has the name in ``functions``.
         """
         own = {name: f"symrot_near_{name}{self.suffix}" for name in NEAR}
         shared = {"sin": "sin", "cos": "cos", "atan2": "atan2", "select_ge": "choose_ge"}
@@ -85,8 +86,8 @@ def _as_float(value: float) -> float:
 def c_expression(node: Node, real: Real = DOUBLE, near: bool = False) -> str:
     """Return a formula as a C expression of type ``real``, with brackets that preserve the order of evaluation.
 
-    With ``near``, functions of ``symrot_math.h``, such as ``symrot_sin``, are called, which compilers vectorise but
-    which are valid for moderate angles only.
+    With ``near``, functions without branches are called, such as ``symrot_sin`` of ``symrot_math.h``: compilers
+    vectorise them, but they are valid for moderate angles only.
     """
     return text(rename(node, functions=real.near_functions if near else real.functions), 0, real.literal)
 
@@ -148,11 +149,14 @@ def function_body(
         Returns the C index, such as ``2*n + k``, of a component of an argument.
     indent : str
         Text in front of each line.
-    real, near
-        As for :func:`c_expression`.
+    real : Real
+        The C type of the numbers.
+    near : bool
+        Whether functions without branches, such as ``symrot_sin`` of ``symrot_math.h``, are called; they are valid for
+        moderate angles only.
     late : sequence of Argument
-        If empty, each output component is stored as soon as it is computed. Otherwise, all output arguments, in the
-        order in which to compute them; they are stored after all of them are computed.
+        All output arguments, in the order in which to compute them, if they are to be stored after all of them are
+        computed. If empty, each output component is stored as soon as it is computed.
     """
     # this order keeps few values in use at a time, so that they fit into registers
     results = dict(program.outputs)

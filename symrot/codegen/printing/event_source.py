@@ -42,9 +42,11 @@ def event_definitions(
         The event functions.
     states : sequence of str
         Names of the states, in order.
-    edges, scales
-        Blocks of states, as for :func:`symrot.propagation.steppers.dop853.translation_unit`. The error of a state is
-        assumed to be a few units in the last place of the largest state in its block, or of the scale of the block.
+    edges : sequence of int
+        State i is in block j if ``edges[j] <= i < edges[j + 1]``.
+    scales : sequence of float
+        One number per block. The error of a state is assumed to be a few units in the last place of this number or,
+        if it is 0, of the largest state in the block.
     """
     places = {"t": "t", **{name: f"y[{i}]" for i, name in enumerate(states)}}
     for argument in program.signature.arguments:
@@ -126,9 +128,10 @@ def _switch(
 ) -> list[str]:
     """Return the first lines of a C function body: ``head``, then ``switch (which)`` with a case per event function.
 
-    Case k defines the values ``texts[k]``, such as ``v3 = v1*v2``, as constants of the C type ``kind``; then come the
-    statements ``own_ends[k]``, or ``ends`` if there are none for single cases. In them ``{last}`` becomes the index of
-    the operation of ``tapes[k]`` that gives the result. The caller adds what follows the switch.
+    Case k defines the values ``texts[k]``, such as ``v3 = v1*v2``, as constants of the C type ``kind``. The case ends
+    with the statements ``own_ends[k]``; if ``own_ends`` is empty, all cases end with ``ends``. In these statements
+    ``{last}`` becomes the index of the operation of ``tapes[k]`` that gives the result. The caller adds the C lines
+    after the switch.
     """
     lines = ["{", "    (void)t;", "    (void)y;", "    (void)p;", *head, "    switch (which) {"]
     for number, (tape, statements) in enumerate(zip(tapes, texts, strict=True)):
@@ -187,9 +190,11 @@ def _statements(index: int, op: Operation, places: dict[str, str], known: dict[s
 
 
 def _enclosed(kind: str, around: str, op: Operation, places: dict[str, str], known: dict[str, str]) -> str:
-    """Return the C expression that encloses the result of an operation: a call of a function in event_enclosures.h."""
-    # around: the C function that makes an enclosure from a centre and a radius; places: input -> C; known: state -> C
-    # text of the error of its value
+    """Return the C expression that encloses the result of an operation: a call of a function in event_enclosures.h.
+
+    ``kind`` is the kind of enclosure, a key of ``ENCLOSURES``, and ``around`` the C function that makes an enclosure
+    from a centre and a radius. ``places`` maps an input to C, and ``known`` a state to the C text of its error.
+    """
     if op.kind == "number":
         return f"symrot_{kind}_point({c_expression(('number', op.value))})"
     if op.kind == "symbol":

@@ -29,9 +29,9 @@ _RAISED = {"binary64": (900, 200), "binary32": (90, 40)}  # a quotient below 2^-
 
 @cache
 def tail_coefficients(first: int, count: int) -> tuple[Fraction, ...]:
-    """Return ``count`` coefficients of p: sin(x) = x + x^3 p(x^2) if first = 3, cos(x) = 1 - x^2/2 + x^4 p(x^2) if 4.
+    """Return ``count`` coefficients, lowest power first, of a polynomial p that approximates the tail of a series.
 
-    The lowest power comes first.
+    For ``first`` = 3, sin(x) is about x + x^3 p(x^2); for ``first`` = 4, cos(x) is about 1 - x^2/2 + x^4 p(x^2).
     """
     # p approximates the series of sine or cosine from the term x^first/first! on, divided by x^first
     sign = -1 if first == 3 else 1
@@ -40,7 +40,7 @@ def tail_coefficients(first: int, count: int) -> tuple[Fraction, ...]:
 
 @cache
 def _arc_coefficients(count: int) -> tuple[Fraction, ...]:
-    """Return ``count`` coefficients of p in atan(z) = z + z^3 p(z^2), lowest power first."""
+    """Return ``count`` coefficients, lowest power first, of a polynomial p: atan(z) is about z + z^3 p(z^2)."""
     return _nearest([Fraction((-1) ** (k + 1), 2 * k + 3) for k in range(_ARC_TERMS)], _ARC_SQUARE, count)
 
 

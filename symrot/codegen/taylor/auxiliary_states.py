@@ -208,8 +208,8 @@ class _Closure:
     def adjoin(self, inner: Polynomial) -> tuple[int | None, Fraction, Fraction]:
         """Return (index, factor, number) such that the polynomial ``inner`` is ``factor*state + number``.
 
-        The index is that of the auxiliary state in this formula, which is added if it is new; the index is None if
-        ``inner`` is a number.
+        The formula holds for unit quaternions. ``state`` is the auxiliary state ``companions[index]``, added if it is
+        new; the index is None if ``inner`` is a number. Raise _NotClosed if the state cannot be added.
         """
         # polynomials that differ only by the identity q0^2 + q1^2 + q2^2 + q3^2 = 1 must give the same state
         degrees = {self.degree(monomial) for monomial in inner.terms}
@@ -251,9 +251,9 @@ class _Closure:
         return result
 
     def seek(self, i: int) -> None:
-        """Make polynomials in q0..q3 that occur in series ``i`` or its operands auxiliary states (additional states).
+        """Turn polynomials in q0..q3 that occur in series ``i`` or its operands into auxiliary (additional) states.
 
-        The series stays as it is; ``replaced`` and ``parts`` note what is to be replaced.
+        The series itself is not changed yet: ``replaced`` and ``parts`` list what :meth:`result` is to replace.
         """
         s = self.series[i]
         if i in self.replaced or s.rule not in ("sum", "product"):
@@ -267,9 +267,9 @@ class _Closure:
                 self.seek(operand)
 
     def seek_in(self, s: Series) -> None:
-        """Make polynomials in q0..q3 that occur in ``s``, a sum of series, auxiliary states (additional states).
+        """Turn polynomials in q0..q3 that occur in ``s``, a sum of series, into auxiliary (additional) states.
 
-        The sum stays as it is; ``replaced`` and ``parts`` note what is to be replaced.
+        The sum itself is not changed yet: ``replaced`` and ``parts`` list what :meth:`result` is to replace.
         """
         # products of components of the attitude are replaced together: q1 q3 + q0 q2 in q1 q3 + q0 q2 + t
         alone = {
@@ -355,7 +355,7 @@ def _rebuilt(closure: _Closure, rates: list[list[_Term]]) -> Recurrences:
     }  # fmt: skip
 
     def left(s: Series) -> list[int]:
-        """Return the indices of the operands that ``s`` keeps: all but those that auxiliary states replace."""
+        """Return the indices of the operands of the series ``s`` that auxiliary states do not replace."""
         return [i for i in s.operands if i not in closure.parts.get(s, (set(),))[0]]
 
     needed: set[int] = set()

@@ -113,7 +113,10 @@ class _Jet:
         self.divided = [i for i, s in enumerate(self.series) if s.rule in ("quotient", "root", "primitive")]
 
     def _make_slots(self) -> None:
-        """Assign each convolution to a slot, a C variable that sums convolutions."""
+        """Assign each convolution to a slot: a C variable that holds one convolution or the sum of several.
+
+        Products that occur with equal weights in the same sums share a slot.
+        """
         uses: dict[int, list[tuple[int, Node, int]]] = {}
         own: set[int] = set()
         for place, s in enumerate((*self.series, *self.system.rates)):
@@ -152,7 +155,10 @@ class _Jet:
         return f"x[{self.state[series]}][{n}]" if series in self.state else f"u{series}[{n}]"
 
     def weight(self, node: Node) -> str:
-        """Return the C expression of a constant without a minus sign in front: a literal, or ``c[k]`` for a formula."""
+        """Return the C expression of a constant: a literal for a number, ``c[k]`` for a formula.
+
+        The caller has split off a minus sign in front of the constant.
+        """
         if not names(node) and node[0] == "number":
             return f"V_ALL({c_expression(node)})"
         return f"c[{self.constants.setdefault(node, len(self.constants))}]"
@@ -165,8 +171,8 @@ class _Jet:
     def slot(self, number: int, stage: str, sums: str) -> str:
         """Return the C expression for coefficient n of slot ``number``, a sum of convolutions ``sum(u[k] v[n-k])``.
 
-        ``stage`` is "first" for n = 0, "second" for n = 1, else "later". ``sums`` is "a" for even n, "b" for odd n: the
-        C variable ``a{number}`` or ``b{number}`` has the terms k = 1 to n - 1.
+        ``stage`` is "first" for n = 0, "second" for n = 1, else "later". ``sums`` is, from n = 2 on, "a" for even n and
+        "b" for odd n: the C variable ``a{number}`` or ``b{number}`` has the terms k = 1 to n - 1.
         """
         # the C variable such as a3 holds the terms k = 1..n-1; terms with coefficients n are added here
         older = f"{sums}{number}" if stage == "later" else ""
@@ -224,7 +230,8 @@ class _Jet:
     def coefficient(self, i: int, n: str, stage: str, sums: str) -> list[str]:
         """Return the C statements that set the variable ``v{i}`` to coefficient ``n`` (C text) of series ``i``.
 
-        ``stage`` and ``sums`` are as for :meth:`slot`.
+        ``stage`` is "first" for n = 0, "second" for n = 1, else "later"; ``sums`` is, from n = 2 on, "a" for even n and
+        "b" for odd n.
         """
         s, name = self.series[i], f"v{i}"
         if s.rule == "sum":
@@ -299,8 +306,8 @@ class _Jet:
     def order(self, n: str, stage: str, sums: str) -> list[str]:
         """Return the C statements that compute coefficient ``n`` of all series, then coefficient n + 1 of the states.
 
-        ``n`` is C text: ``"0"``, ``"1"``, ``"n"`` (even) or ``"m"`` (n + 1). ``stage`` and ``sums`` are as for
-        :meth:`slot`.
+        The C text ``n`` is ``"0"``, ``"1"``, ``"n"`` (an even index from 2 on) or ``"m"`` (an odd index from 3 on);
+        ``stage`` is then "first", "second", "later" and "later", and ``sums`` is "", "", "a" and "b".
         """
         lines: list[str] = []
         made: set[int] = set()
@@ -337,8 +344,9 @@ class _Jet:
     def loops(self) -> list[str]:
         """Return the C loops that add up terms of all convolutions for two coefficients: n (even) and n + 1.
 
-        They set the C variable ``a{i}`` to the terms k = 1 to n - 1 of slot i for coefficient n, and ``b{i}`` to those
-        for coefficient n + 1 that contain no coefficient n, which is still unknown.
+        Slot i is a sum of convolutions ``sum(u[k] v[n-k])``. The loops set the C variable ``a{i}`` to the sum of its
+        terms k = 1 to n - 1 for coefficient n, and ``b{i}`` to the sum of its terms k = 2 to n - 1 for coefficient
+        n + 1; coefficient n itself is still unknown.
         """
         # each number is read once for both coefficients
         return [line for group in self._groups() for line in self._loop(group)]
@@ -393,8 +401,9 @@ class _Jet:
     ) -> list[str]:
         """Return the C loop over k, two values at a time, that adds up products u[k] v[n-k] of two series u and v.
 
-        ``terms`` are (i, sign, convolution of u and v): the product is added, with the sign, to the C variable ``a{i}``
-        for coefficient n and to ``b{i}`` for n + 1. ``left`` and ``right`` are the indices of all series u and v.
+        ``terms`` are (i, sign, convolution of u and v). With the sign, the loop adds products for coefficient n of slot
+        i (a sum of convolutions) to the C variable ``a{i}``, and for coefficient n + 1 to ``b{i}``. ``left`` and
+        ``right`` are the indices of all series u and v.
         """
         lines = ["{", *(f"    symrot_v f{i} = {self.at(i, '1')};" for i in left)]
         lines.append("    for (int64_t k = 1; k < n - 1; k += 2) {")
@@ -413,9 +422,10 @@ class _Jet:
         return [*lines, "}"]
 
     def completed_sums(self) -> list[str]:
-        """Return the C statements that complete the C variables ``b{i}``, the sums for coefficient n + 1 of slot i.
+        """Return the C statements that complete ``b{i}``, the sum of the inner terms of slot i for coefficient n + 1.
 
-        The loops left out u[1] v[n] and u[n] v[1], because coefficient n was still unknown.
+        A slot is a sum of convolutions. The C loops of :meth:`loops` left out the terms u[1] v[n] and u[n] v[1], since
+        coefficient n was still unknown.
         """
         lines: list[str] = []
         for i, slot in enumerate(self.slots):

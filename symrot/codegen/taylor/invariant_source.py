@@ -21,7 +21,7 @@ _OPERATIONS = {  # C functions of operations on pairs of doubles
     "neg": "dd_negative", "sqrt": "symrot_pair_root",
 }  # fmt: skip
 IN_PAIRS = {*_OPERATIONS, "number", "symbol"}
-"""Operations and operands for which double-double arithmetic is available."""
+"""Kinds of tape entries (operations, numbers and inputs) for which double-double arithmetic is available."""
 
 
 def projectable(program: Program, outputs: Sequence[str]) -> list[str]:
@@ -112,10 +112,10 @@ def _varying(tape: Tape, needed: Sequence[int], states: set[str]) -> set[int]:
 
 
 def _shares(op: Operation, index: int, slope: str) -> list[str]:
-    """Return the C terms by which an operation changes the derivatives with respect to its operands, one per operand.
+    """Return the C terms that an operation adds to the derivatives of a conserved quantity by its operands.
 
-    For ``v3 = v1*v2`` they are ``g*v2.hi`` and ``g*v1.hi``, where g is the C name ``slope`` of the derivative with
-    respect to v3. ``index`` is 3.
+    For ``v3 = v1*v2``, with ``index`` 3, the derivatives by v1 and v2 get the terms ``g*v2.hi`` and ``g*v1.hi``, if g
+    (``slope``) is the derivative by v3: reverse-mode differentiation.
     """
     values = [f"v{i}.hi" for i in op.operands]
     if op.kind == "+":

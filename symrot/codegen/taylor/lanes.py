@@ -1,8 +1,8 @@
 """Arrangement of the Taylor series of one motion in SIMD vectors of four elements, called lanes.
 
 A row is a vector of up to four series that are computed together, by the same recurrence rule (such as "product"). A
-pack is a vector of any four series, and a column the convolution of two packs. A slot is a sum of columns times a
-vector of four constants.
+pack is a vector of any four series, and a column the convolution of two packs. A slot is a sum of columns; the sum is
+multiplied by a vector of four constants.
 """
 
 from collections.abc import Iterable, Sequence
@@ -87,7 +87,7 @@ def lay_out(system: Recurrences, edges: Sequence[int]) -> Layout:
 
 
 def cost(layout: Layout) -> int:
-    """Return an estimate of the time that one coefficient of all series takes: the number of columns plus that of rows.
+    """Return an estimate of the time that one coefficient of all series takes: number of columns plus number of rows.
 
     A column is a vector of four convolutions, a row a vector of up to four series.
     """
@@ -213,9 +213,9 @@ class _Placer:
         return Layout(self.series, tuple(self.rows), tuple(rates), tuple(self.columns), own, self.system.states, seeds)
 
     def _shape(self, i: int) -> tuple[int, ...]:
-        """Return a part of the sort key of series ``i`` among the series that are computed by the same rule.
+        """Return two numbers by which series with the same rule are sorted, so that similar series share a SIMD vector.
 
-        Neighbours in the order share a SIMD vector (row): sums with about equally many products, for instance.
+        For series ``i`` they are (whether it is an exponential, minus the number of products that only sums contain).
         """
         s = self.series[i]
         products = sum(operand in self.inlined for operand in s.operands)
@@ -227,7 +227,8 @@ class _Placer:
     def pack(self, items: Sequence[tuple[int, int] | None]) -> Pack:
         """Return a pack, a vector of four series, for four ``items``: pairs (sign, index of a series) or None.
 
-        None stands for any value: it becomes a series of the same row as the first pair, whose vector is read anyway.
+        None stands for an element whose value does not matter: it is read from the SIMD vector of the first pair, so
+        that no further vector is needed.
         """
         addresses = [None if item is None else self.address(*item, lane) for lane, item in enumerate(items)]
         first = next(address for address in addresses if address is not None)

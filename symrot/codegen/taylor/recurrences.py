@@ -209,9 +209,9 @@ class _Builder:
         return Linear(None, {self.add(Series("quotient", (v,))): folded(("/", value_of(left), b))})
 
     def reciprocal(self, number: int) -> Linear | None:
-        """Return 1/v, where v is the series ``number``: ``cosh(a)*cosh(b)`` gives ``sech(a)*sech(b)``.
+        """Return the linear form of 1/v, where v is the series with the index ``number``, without a division.
 
-        None if v is no product of hyperbolic cosines.
+        ``cosh(a)*cosh(b)`` gives ``sech(a)*sech(b)``. None if v is no product of hyperbolic cosines.
         """
         series = self.series[number]
         if series.rule == "product":

@@ -1,4 +1,4 @@
-"""C code of the Taylor series of one motion: one function computes the jet, all Taylor coefficients of all states.
+"""C code of the Taylor series of one motion: a function computes all Taylor coefficients of all states (the jet).
 
 The series are arranged in rows (SIMD vectors of four), and their products in columns (convolutions of two vectors), see
 :mod:`symrot.codegen.taylor.lanes`. The code is placed between :file:`taylor.h`, the operations on vectors, and
@@ -66,7 +66,8 @@ def taylor_definitions(program: Program, edges: Sequence[int], scales: Sequence[
 def checked_system(program: Program, edges: Sequence[int], scales: Sequence[float], order: int) -> Recurrences:
     """Return the Taylor recurrences of ``program`` after a check of the arguments of :func:`taylor_definitions`.
 
-    Raise InputError if ``order`` is odd or below 4, or if ``edges`` and ``scales`` do not fit the states.
+    Raise InputError if ``order`` is odd or below 4, if ``edges`` (the limits of blocks of states) do not increase from
+    0 to the number of states, or if ``scales`` is not one number per block.
     """
     if order < 4 or order % 2:
         raise InputError(f"order of the Taylor method: expected an even number, at least 4, got {order}")
@@ -151,11 +152,11 @@ class _Jet:
         return f"V_FLIP({value}, {', '.join('-1' if sign < 0 else '1' for sign in signs)})" if -1 in signs else value
 
     def column(self, index: int, stage: str, sums: str) -> str:
-        """Return the C expression for coefficient n of column ``index``, which has four convolutions; empty for zero.
+        """Return the C expression for coefficient n of the four convolutions in column ``index``.
 
-        ``stage`` is "first" for n = 0, "second" for n = 1, else "later". ``sums`` is "a" for even n, "b" for odd n: the
-        C variable ``a{index}`` or ``b{index}`` has the terms k = 1 to n - 1, to which this expression adds k = 0 and
-        k = n.
+        The text is empty if all four are zero. ``stage`` is "first" for n = 0, "second" for n = 1, else "later".
+        From n = 2 on, ``sums`` is "a" for even n and "b" for odd n: the C variable ``a{index}`` or ``b{index}`` has
+        the terms k = 1 to n - 1, to which this expression adds k = 0 and k = n.
         """
         a, b, ends = self.layout.columns[index]
         known = f"{sums}{index}" if stage == "later" else ""
@@ -179,8 +180,9 @@ class _Jet:
     def sum(self, row: Row, stage: str, sums: str, factor: str = "", fused: str = "V_FMA") -> str:
         """Return the C expression for coefficient n of the sums in ``row``: one sum of series and products per lane.
 
-        The expression is multiplied by ``factor`` (C text; empty for 1). ``fused`` is the C function that computes
-        a b + c; ``stage`` and ``sums`` are as for :meth:`column`.
+        The expression is multiplied by ``factor`` (C text; empty for 1). ``stage`` is "first" for n = 0, "second" for
+        n = 1, else "later"; ``sums`` is, from n = 2 on, "a" for even n and "b" for odd n. ``fused`` is the C function
+        that computes a b + c.
         """
         # terms that are computed last are added last, so that others need not wait
         value = ""
@@ -198,7 +200,7 @@ class _Jet:
         return value or "V_ALL(0.0)"
 
     def _weights_of_time(self, row: Row) -> str:
-        """Return the C text of a vector: the factor by which each of the four sums in ``row`` multiplies the time.
+        """Return the C text of a vector: the coefficient of the time in each of the four sums of ``row``.
 
         The text is empty if no sum contains the time. The time is the sum t + t_low of two doubles; the sums contain t,
         and :meth:`row` adds t_low times this vector.
@@ -223,9 +225,10 @@ class _Jet:
         return f"V_MUL({constant}, {factor})" if factor else constant
 
     def row(self, number: int, n: str, stage: str, sums: str) -> list[str]:
-        """Return the C statements that set the vector ``r{number}`` to coefficient ``n`` of the series in this row.
+        """Return the C statements that set the vector ``r{number}`` to coefficient n of the series in row ``number``.
 
-        ``n`` is C text; ``stage`` and ``sums`` are as for :meth:`column`.
+        A row is a vector of up to four series. The index ``n`` is C text, ``stage`` is "first" for n = 0, "second" for
+        n = 1, else "later"; ``sums`` is, from n = 2 on, "a" for even n and "b" for odd n.
         """
         row, name = self.rows[number], f"r{number}"
         terms = [self.picked(term.pack) for term in row.terms]
@@ -268,7 +271,7 @@ class _Jet:
     def _quotient(self, row: Row, name: str, stage: str, terms: list[str], total: str) -> list[str]:
         """Return the C statements that set the variable ``name`` to coefficient n of w = u/v: ``(u[n] - total)/v[0]``.
 
-        ``terms`` are the C texts of v[n] and u[n], ``total`` is that of ``sum(v[k] w[n-k], k = 1..n)``.
+        ``terms`` are the C texts of v[n] and u[n], ``total`` is the C text of ``sum(v[k] w[n-k], k = 1..n)``.
         """
         # u[n] is missing if u is constant
         divisor, upper = f"d{name[1:]}", "V_ALL(0.0)"
@@ -283,7 +286,10 @@ class _Jet:
         return [f"{divisor} = {terms[0]};", f"{name} = V_DIV({upper}, {divisor});"]
 
     def _seed(self, row: Row) -> str:
-        """Return the C expression for coefficient 0 of the four functions in a row: ``V_SET(exp(..), exp(..), ..)``."""
+        """Return the C expression for coefficient 0 of the functions in ``row``, one in each element of a SIMD vector.
+
+        An example is ``V_SET(exp(..), exp(..), exp(..), exp(..))``.
+        """
         first = {"driven": 2, "primitive": 3, "root": 0}[row.rule]
         lanes = []
         for series in row.lanes:
@@ -296,7 +302,10 @@ class _Jet:
         return f"V_SET({', '.join(lanes)})"
 
     def _clock_seed(self, row: Row, name: str) -> list[str]:
-        """Return the C statements that set ``name`` to coefficient 0 of four functions such as sin(a t + b)."""
+        """Return the C statements that set the C vector ``name`` to coefficient 0 of the four functions in ``row``.
+
+        They are functions of a linear phase, such as sin(a t + b).
+        """
         series = [self.layout.series[i] for i in row.lanes if i is not None]
         rates = self.constant(tuple(s.weights[0] for s in series))  # type: ignore[misc]
         offsets = self.constant(row.constant) if row.constant and set(row.constant) != {ZERO} else ""
@@ -322,7 +331,7 @@ class _Jet:
         return f"V_LANE(r{row}, {lane})"
 
     def seeds(self) -> list[str]:
-        """Return the C statements that set coefficient 0 of the auxiliary states."""
+        """Return the C statements that compute the auxiliary states at the start of a step, their coefficients 0."""
         lines: list[str] = []
         formulas = [formula for row in self.layout.seeds for formula in row]
         places = {name: f"V_LANE({self.constant((('symbol', name),) * LANES)}, 0)"
@@ -350,8 +359,8 @@ class _Jet:
     def order(self, n: str, stage: str, sums: str) -> list[str]:
         """Return the C statements that compute coefficient ``n`` of all series, then coefficient n + 1 of the states.
 
-        ``n`` is C text: ``"0"``, ``"1"``, ``"n"`` (even) or ``"m"`` (n + 1). ``stage`` and ``sums`` are as for
-        :meth:`column`.
+        The C text ``n`` is ``"0"``, ``"1"``, ``"n"`` (an even index from 2 on) or ``"m"`` (an odd index from 3 on);
+        ``stage`` is then "first", "second", "later" and "later", and ``sums`` is "", "", "a" and "b".
         """
         lines: list[str] = []
         done, packed = set(range(self.state_rows)), set[Pack]()
@@ -383,8 +392,9 @@ class _Jet:
     def loops(self) -> list[str]:
         """Return the C loops that add up terms of all convolutions for two coefficients: n (even) and n + 1.
 
-        They set the C variable ``a{i}`` to the terms k = 1 to n - 1 of column i for coefficient n, and ``b{i}`` to the
-        terms for coefficient n + 1 that contain no coefficient n, which is still unknown.
+        Column i is a vector of four convolutions ``sum(a[k] b[n-k])``. The loops set the C variable ``a{i}`` to the sum
+        of its terms k = 1 to n - 1 for coefficient n, and ``b{i}`` to the sum of its terms k = 2 to n - 1 for
+        coefficient n + 1; coefficient n itself is still unknown.
         """
         # each number is read once for both coefficients
         lines: list[str] = []
@@ -412,9 +422,10 @@ class _Jet:
         return lines
 
     def completed_sums(self) -> list[str]:
-        """Return the C statements that complete the C variables ``b{i}``, the sums for coefficient n + 1 of column i.
+        """Return the C statements that complete ``b{i}``, the inner terms of column i for coefficient n + 1.
 
-        The loops left out a[1] b[n] and a[n] b[1], because coefficient n was still unknown.
+        Column i is a vector of four convolutions. The C loops of :meth:`loops` left out the terms a[1] b[n] and
+        a[n] b[1], since coefficient n was still unknown.
         """
         lines: list[str] = []
         for i, (a, b, _) in enumerate(self.layout.columns):

@@ -136,7 +136,8 @@ class _Mover:
     def gathered(self, node: Node) -> _Form | None:
         """Return a sum with its terms of the form a t + b added up: ``(t - 2) + x + 3`` becomes ``(t + 1) + x``.
 
-        The result is None if all terms are of this form, if fewer than two are, or if none of those contains t.
+        The result is None if all terms have the form a t + b, if fewer than two have it, or if no term of the form
+        contains t.
         """
         lines: list[tuple[Node, ...]] = []
         others: list[tuple[bool, _Form]] = []
@@ -171,7 +172,7 @@ class _Mover:
     def written(self, form: _Form) -> Node:
         """Return the formula of ``form`` in tau = t - epoch, the time counted from the epoch.
 
-        If the form has only the coefficients of a polynomial in t, the formula is made by Horner's rule.
+        If ``form.node`` is None, the formula is made from the coefficients of the polynomial in t, ``form.terms``.
         """
         if form.node is not None:
             return form.node

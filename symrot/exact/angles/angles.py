@@ -1,7 +1,8 @@
 """Angles as linear combinations of atoms with rational coefficients; atoms are symbols, or products such as ``x*y``.
 
-``2*phi - psi/2 + pi/3`` has the linear form ``{phi: 2, psi: -1/2}`` plus ``1/3`` of pi. Each atom has a base angle, of
-which all its angles are whole multiples: theta/6 if theta/2 and theta/3 occur (``docs/exact_decisions.md``, section 4).
+``2*phi - psi/2 + pi/3`` has the linear form ``{phi: 2, psi: -1/2}`` plus ``1/3`` of pi. All multiples of one atom that
+occur, such as theta/2 and theta/3, are whole multiples of its base angle, here theta/6 (``docs/exact_decisions.md``,
+section 4).
 """
 
 from collections.abc import Iterable
@@ -15,7 +16,10 @@ from sympy import Expr, Rational, chebyshevt_poly, chebyshevu_poly, cos, pi, sin
 from symrot.errors import InputError
 
 PARTS = 24
-"""Number n for which multiples of pi/n need no atom: their sines and cosines are in Q(sqrt 2, sqrt 3, cos(pi/8))."""
+"""Number n such that sines and cosines of multiples of pi/n are numbers in the field Q(sqrt 2, sqrt 3, cos(pi/8)).
+
+For other fractions of pi, pi is an atom like a symbol.
+"""
 
 
 @dataclass(frozen=True)

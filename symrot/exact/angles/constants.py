@@ -50,7 +50,7 @@ def cosine_number(place: int, degree: int, order: int) -> Number:
 
 
 def root_number(place: int, index: int, inside: PolyElement, known: Mapping[int, Number]) -> Number:
-    """Return the root ``inside^(1/index)`` as an algebraic number.
+    """Return the root ``inside^(1/index)`` as an algebraic number; ``place`` is the index of its variable in the ring.
 
     ``inside`` is a polynomial in the numbers ``known`` (index of the variable -> number).
     """

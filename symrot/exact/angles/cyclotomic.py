@@ -40,9 +40,10 @@ def order(denominator: int) -> int:
 
 
 def has_affordable_degree(denominator: int) -> bool:
-    """Return whether the degree of 2 cos(pi/N) is small enough to express cosines of multiples of pi/denominator by it.
+    """Return whether the algebraic number 2 cos(pi/N) has a degree of at most LARGEST_DEGREE.
 
-    N is ``order(denominator)``.
+    If so, cosines of multiples of pi/denominator are written as polynomials in the number. N is ``order(denominator)``,
+    the smallest even multiple of the denominator.
     """
     # beyond this degree the polynomials would be too long: the sines and cosines stay symbols
     return order(denominator) <= 12 * LARGEST_DEGREE and degree(order(denominator)) <= LARGEST_DEGREE

@@ -44,7 +44,7 @@ def cosine_sine(angle: Expr, halvings: int) -> Pair:
 
 
 Range = tuple[Fraction, Fraction, bool, bool]
-"""Smallest and largest value, in multiples of pi, and whether the function takes each of these values."""
+"""Bounds of an inverse function's values, in units of pi, as (low, high, whether low is attained, whether high is)."""
 
 _QUARTER = Fraction(1, 2)
 

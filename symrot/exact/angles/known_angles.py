@@ -33,9 +33,9 @@ def halved(coefficient: Fraction) -> Iterator[tuple[int, int]]:
 
 
 def parts_of(atom: Expr, coefficient: Fraction) -> list[Expr]:
-    """Return the cosines and sines from which sum formulas give the cosine and sine of ``coefficient * atom``.
+    """Return cosines and sines from which those of ``coefficient * atom`` follow by the formulas for sums of angles.
 
-    They are listed as cos, sin, cos, sin, ..: for 5/4, those of ``atom`` and then those of ``atom/4``.
+    They are listed as cos, sin, cos, sin, ..: for 5/4, cosine and sine of ``atom``, then of ``atom/4``.
 
     Examples
     --------

@@ -22,7 +22,7 @@ STARTS = 160
 """Number of random points from each of which a search starts for a point that satisfies all conditions."""
 
 MOST_LOOKS = 60_000
-"""Number of evaluations after which a search gives up."""
+"""Number of evaluations of conditions after which the search for a point that satisfies all conditions gives up."""
 
 SIMPLE = tuple(Fraction(n, d) for n, d in ((1, 1), (2, 1), (1, 2), (-1, 1), (3, 1), (1, 3), (-1, 2), (0, 1), (-2, 1)))
 WIDER = (*SIMPLE, *(Fraction(sign * n, d) for n, d in ((1, 10), (5, 1), (10, 1), (3, 7), (1, 100), (50, 1), (3, 2),

@@ -1,1 +1,1 @@
-"""Limits of the effort for one decision, counted in operations and conversions, and the size of formulas."""
+"""Limits of effort: operations for one claim, polynomial rings for one decision; also the size of a formula."""

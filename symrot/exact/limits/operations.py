@@ -26,9 +26,9 @@ _left: ContextVar[list[int] | None] = ContextVar("operations left for the claim"
 
 @contextmanager
 def one_claim(most: int) -> Iterator[None]:
-    """Return a context in which operations count against one budget of ``most``.
+    """Return a context for one claim, in which at most ``most`` operations are allowed.
 
-    A claim inside another one, such as a repair that is checked, shares its budget.
+    A context inside another one, such as for a repair of the claim, shares the budget of the outer one.
     """
     if _left.get() is not None:
         yield

@@ -40,13 +40,13 @@ class Angles:
     forms : mapping
         Angle as it is written -> its linear form.
     bases : mapping
-        Atom (a symbol, or a product such as ``x*y``, in angles) -> coefficient of its base angle, of which all its
-        angles are whole multiples: 1/2 for theta with the base angle theta/2.
+        Atom (a symbol, or a product such as ``x*y``, in angles) -> a coefficient c. The base angle is c times the atom,
+        and the angles contain whole multiples of it: c = 1/2 for the angles theta and theta/2.
     cosines, sines : mapping
         Atom -> index of the variable for the cosine or sine of its base angle.
     fine, fine_place : int
-        N and the index of the variable for 2 cos(pi/N), in which the sines and cosines of constant angles such as
-        3 pi/7 are polynomials (N = 14); N is 0 if the ring has no such variable.
+        N, and the index of the ring's variable that stands for 2 cos(pi/N). The sines and cosines of constant angles
+        are polynomials in this variable: N = 14 for 3 pi/7. N is 0 if the ring has no such variable.
     known : dict
         Angle -> (cosine, sine), the results of :meth:`cosine_sine` so far.
     """

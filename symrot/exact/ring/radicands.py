@@ -27,7 +27,8 @@ Outside = tuple[tuple[Root | Expr, int], ...]
 def take_squares(above: PolyElement, below: PolyElement, generators: Sequence[Expr]) -> tuple[Expr, Outside, bool]:
     """Return (P, pairs (f, n), loose) with ``above/below = P * product(f^(2 n))`` and no f negative.
 
-    ``loose``: whether P may be negative where an f is zero. ``x^2 y`` gives y, (``|x|``, 1) and True.
+    ``loose``: whether P may be negative where an f is zero. ``x^2 y`` gives P = y, the pair (``|x|``, 1) and True,
+    because at x = 0, y = -1 the square root of ``x^2 y`` is real, but that of P is not.
     """
     whole = above.ring.clone(domain=ZZ)
     above, below = above.set_ring(whole), below.set_ring(whole)

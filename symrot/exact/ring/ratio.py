@@ -21,8 +21,9 @@ from symrot.exact.limits.operations import spend
 __all__ = ["MOST_PRODUCTS", "Ratio", "Ratios", "TooLarge"]
 
 MOST_PRODUCTS = 1_000_000
-"""Largest number of products of two terms in one polynomial ring, which take seconds.
+"""Largest total number of products of two terms that is computed in one polynomial ring; so many take seconds.
 
+In a ring with 8 or more variables, a product counts more than once.
 A count, unlike a time limit, stops a computation at the same term on every machine. The formulas of the four textbooks
 and courses that symrot checks need at most 27 000."""
 
@@ -180,7 +181,10 @@ class Ratios:
         )
 
     def _may_divide(self, number: int, value: int) -> bool:
-        """Return whether factor ``number`` can divide a polynomial that has the ``value`` at ``self.point``."""
+        """Return False if a polynomial cannot be divisible by ``self.factors[number]``, judged by values at one point.
+
+        ``value`` is the value of the polynomial at ``self.point``, a point of integers.
+        """
         # Gauss's lemma: with coprime integer coefficients a quotient has integer coefficients, so the value of the
         # factor divides the other value; this test is faster than a division that fails
         own = self.values[number]

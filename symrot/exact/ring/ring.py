@@ -41,7 +41,9 @@ from symrot.exact.ring.roots import Radical, Radicand, Root, is_root, radical, s
 __all__ = ["FormulaRing", "as_zero"]
 
 MOST_NESTED_TERMS = 40
-"""Largest number of terms of a radicand that contains roots: each level of nesting multiplies the work."""
+"""Largest number of terms (numerator and denominator) of a radicand that itself contains roots.
+
+A larger radicand raises TooLarge, because each level of nested roots multiplies the work."""
 
 
 def as_zero(relation: Any) -> Expr:
@@ -306,11 +308,11 @@ class FormulaRing:
         return above.quo_ground(below.LC)
 
     def _tangled_numbers(self, rules: Sequence[Rule]) -> dict[int, Number]:
-        """Return a map from indices of variables to the algebraic numbers that they stand for, such as 2^(1/3).
+        """Return a map from the index of a variable to the algebraic number, such as 2^(1/3), that it stands for.
 
-        Such numbers may satisfy equations that do not follow from the ring's relations. The map is empty if they
-        cannot, as for square roots of primes alone, and if the ring contains the imaginary unit, because the proofs of
-        these equations need real numbers.
+        Several such numbers may satisfy equations that do not follow from the ring's relations. The map is empty if
+        there is no such equation: for a single number, and for square roots of primes alone. The map is also empty if
+        the ring contains the imaginary unit, because symrot proves such equations for real numbers only.
         """
         known: dict[int, Number] = {}
         if self.fine:

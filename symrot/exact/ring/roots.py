@@ -1,7 +1,8 @@
-"""Roots: each fractional power as a rational factor times variables ``g`` of the ring with a relation ``g^n = P``.
+"""Roots in formulas: a fractional power becomes a rational factor times variables g of a polynomial ring.
 
-``sqrt(P/Q)`` is written ``g/|Q|`` with ``g^2 = P*Q``, and squares leave a root as absolute values, ``sqrt(x^2 y) = |x|
-sqrt(y)``. So the variable of a square root is never negative. For other roots, ``(P/Q)^(1/n)`` is ``g/Q``.
+Each variable g has a relation ``g^n = P`` with a polynomial P. ``sqrt(P/Q)`` is written ``g/|Q|`` with ``g^2 = P*Q``,
+and a square under a square root is written outside as an absolute value: ``sqrt(x^2 y) = |x| sqrt(y)``. So the variable
+of a square root is never negative. For other roots, ``(P/Q)^(1/n)`` is ``g/Q``.
 """
 
 from collections.abc import Callable, Iterable
@@ -30,7 +31,9 @@ __all__ = [
 ]
 
 MOST_TERMS = 4000
-"""Largest number of terms of a radicand, which is ``P Q^(n-1)`` for the n-th root of a fraction P/Q."""
+"""Largest number of terms of a radicand; a larger one raises TooLarge.
+
+The radicand of the n-th root of a fraction P/Q is ``P Q^(n-1)``; its terms are counted before equal ones are added."""
 
 MOST_BITS_FACTORED, LARGEST_DIVISOR = 64, 2**15
 """Largest number of bits of a number that is factored completely; in longer numbers, only divisors below
@@ -52,7 +55,10 @@ def written(node: Expr) -> str:
 
 @dataclass(frozen=True)
 class Root:
-    """A root as a variable of the ring, with ``expression^index = power_expression``; sqrt(x + 1) has the index 2."""
+    """A root as a variable of a polynomial ring, with ``expression^index = power_expression``.
+
+    sqrt(x + 1) has the index 2 and the power expression x + 1.
+    """
 
     expression: Expr
     power_expression: Expr
@@ -77,10 +83,10 @@ class Radicand:
 
 @dataclass(frozen=True)
 class Radical:
-    """A fractional power in factors: ``(rational * product(roots) / below * product(f^n))^power``.
+    """A fractional power in factors: ``(rational * product(roots) * product(f^n) / below)^power``.
 
-    The pairs (f, n) are in ``outside``. ``sqrt(4 x^2 y)^3`` has rational 2, the root sqrt(y), the pair (``|x|``, 1) and
-    power 3.
+    The pairs (f, n) are in ``outside``; ``below`` is the denominator Q in ``(P/Q)^(1/n) = g/Q``, 1 for square roots.
+    Example: ``sqrt(4 x^2 y)^3 = (2 sqrt(y) |x|)^3`` has rational 2, root sqrt(y), pair (``|x|``, 1), power 3.
     """
 
     base: Expr
@@ -102,7 +108,10 @@ class Radical:
 
     @property
     def parts(self) -> tuple[Expr, ...]:
-        """The formulas inside this power, such as radicands: the ring also needs the symbols and roots in them."""
+        """The formulas inside this fractional power, such as radicands.
+
+        A polynomial ring that contains the power also needs variables for the symbols and roots in these formulas.
+        """
         insides = [root.power_expression for root in self.generators]
         return (self.rational, self.below, *insides, *(f for f, _ in self.outside if not isinstance(f, Root)))
 
@@ -158,7 +167,10 @@ def radical(node: Expr, radicand: Callable[[Expr, int], Radicand]) -> Radical:
 
 
 def absolute(value: Expr) -> Root | Expr:
-    """Return the absolute value of a real expression, as a root ``|x|`` if the sign of x is not known."""
+    """Return the absolute value of a real expression x: ``x`` or ``-x`` if the sign of x is known, else a Root.
+
+    An absolute value counts as a root, because ``|x|^2 = x^2``.
+    """
     sign = sign_of(value)
     return sign * value if sign else Root(Abs(value), (value**2).expand(), 2, 1 + _nesting([value]))
 
@@ -196,7 +208,7 @@ def _imaginary_unit() -> Root:
 
 
 def square_root_of_number(value: Rational) -> tuple[Rational, list[Root]]:
-    """Return (r, roots): the root of a positive rational is r times ``roots`` of primes.
+    """Return (r, roots): the square root of a positive rational number is r times the product of ``roots`` of primes.
 
     12/5 gives 2/5, sqrt(3) and sqrt(5).
     """

@@ -2,6 +2,7 @@
 
 import json
 import re
+from collections import Counter
 from collections.abc import Callable, Iterator, Mapping, Sequence
 from pathlib import Path
 from typing import Any
@@ -128,12 +129,21 @@ def _answers(path: str | Path, text: str) -> dict[str, str]:
                 f"{path}, line {number}: expected a question, a colon and an answer, such as '1a: m*L^2/3', "
                 f"got {line.strip()[:60]!r}"
             )
+        if match[1] in answers:
+            raise InputError(f"{path}, line {number}: expected one answer to question {match[1]}, got a second one")
         answers[match[1]] = match[2]
     return answers
 
 
 def _json(path: str | Path, text: str) -> Any:
+    def without_repetition(pairs: list[tuple[str, Any]]) -> dict[str, Any]:
+        unique = dict(pairs)
+        if len(unique) < len(pairs):
+            twice = Counter(name for name, _ in pairs).most_common(1)[0][0]
+            raise InputError(f"{path}: expected each name once, got {twice[:60]!r} more than once")
+        return unique
+
     try:
-        return json.loads(text)
+        return json.loads(text, object_pairs_hook=without_repetition)
     except json.JSONDecodeError as fault:
         raise InputError(f"{path}: expected JSON, but {fault}") from None

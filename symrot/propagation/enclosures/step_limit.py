@@ -93,9 +93,9 @@ def _inverse(a: Parts) -> Parts:
 def _sqrt(a: Disc, whole: float) -> Disc:
     """Return a disc that contains the square roots of all numbers in the disc ``a``.
 
-    Unless all numbers in ``a`` have a positive real part, the radius is multiplied by ``whole``, 1 divided by the
-    missed share: a square root has no Taylor series at zero, so that a step may miss all of its change there, not only
-    the missed share.
+    Unless all numbers in ``a`` have a positive real part, the radius is multiplied by ``whole``. This is 1 divided by
+    the largest share of a change that the polynomial of a step may miss; the polynomial may miss the change of a square
+    root near zero entirely, because the root has no Taylor series at zero.
     """
     root = math.sqrt(max(a.centre, 0.0))
     if a.centre > a.radius:
@@ -213,9 +213,9 @@ class Deviations:
         """Return, for each rate, a bound of its change while time and states vary around ``t`` and ``y``.
 
         Time varies in a complex disc with the radius ``radius``, s, and state k in a disc with the radius ``radii[k]``.
-        The bound of a square root near zero is multiplied by ``whole``, 1 divided by the missed share: the caller
-        multiplies all bounds by the missed share, but a step may miss such a root entirely. A bound is infinite if a
-        pole may lie in the discs.
+        The caller multiplies all bounds by the largest share of a change that the polynomial of a step may miss. But it
+        may miss the change of a square root near zero entirely: the bound of such a root is multiplied by ``whole``, 1
+        divided by that share. A bound is infinite if a pole may lie in the discs.
         """
         self.spent += 1
         try:
@@ -238,8 +238,8 @@ class Deviations:
     ) -> dict[int, Parts]:
         """Return discs that contain the values of the intermediate results of the rates while time and states vary.
 
-        The arguments are those with which :class:`Deviations` is called. The key of a disc is the index of its
-        intermediate result in the series of the enclosure.
+        The arguments are those of :meth:`__call__`. The key of a disc is the index of its intermediate result in
+        ``enclosure.system.series``, where ``enclosure`` is the argument of the constructor.
         """
         discs: dict[int, Parts] = {}
         for i, series, operands, weights in self._rules:
@@ -273,7 +273,7 @@ class Deviations:
 
     @staticmethod
     def _rounded(series: Series, linear: bool, disc: Parts, operands: list[float], weights: list[float]) -> Parts:
-        """Return a disc around the computed value of a function of the time that contains its exact value."""
+        """Return a disc around the computed value of a function of the time, large enough for its rounding errors."""
         centre, radius, log_size = disc
         if linear:  # the time itself, or a phase: its operands have no other errors that count
             return centre, HALF_ULP * abs(centre), None
@@ -295,9 +295,9 @@ def longest_followed(
 ) -> float:
     """Return the length of a step, at most h, for which the error from a missed change of the torque is proven small.
 
-    This error is at most ``allowed``. The result has the sign of h. It is h if that is proven for h; otherwise it is
-    usually close to the longest length for which it is proven. An absolute value of 1e-300 s or less means that nothing
-    was proven.
+    The error is small if it is at most ``allowed``. The result has the sign of h. It is h if the proof succeeds for h,
+    otherwise usually close to the longest length for which it succeeds. A result of at most 1e-300 s in absolute value
+    means that nothing was proven.
 
     Parameters
     ----------

@@ -114,7 +114,10 @@ def uses_attitude(events: Iterable[Event]) -> bool:
 
 
 def timed(quantities: Program, events: Iterable[Event]) -> bool:
-    """Return whether the value of an event needs the time t besides the states of the motion."""
+    """Return whether the formula of any event, or an output quantity in such a formula, contains the time t.
+
+    ``quantities`` is the program that computes the output quantities from the states.
+    """
     # if not, the search may count time from the start of the motion
     used = set().union(*(names(event.node) for event in events))
     return "t" in used or quantities.uses("t", tuple(f"{name} of t" for name in used))

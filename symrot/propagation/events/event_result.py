@@ -283,7 +283,10 @@ def _side(motion: Motion, end: float) -> _Side:
 
 
 def _without_residues(pieces: Sequence[Piece], blocks: Sequence[int]) -> Generator[Piece, None, None]:
-    """Yield the polynomials of a motion, with states that are zero up to rounding errors set to zero."""
+    """Yield the polynomials of a motion, with states that are zero up to rounding errors set to zero.
+
+    ``blocks`` are the edges of the blocks of states (omega, attitude), such as (0, 3, 7).
+    """
     # Such as the angular velocity of a body that friction has stopped, whose sign must not change again and again. A
     # state is compared with the largest value in its block (omega, attitude).
     count = blocks[-1]

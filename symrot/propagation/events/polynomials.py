@@ -135,11 +135,13 @@ def fitted(
         Takes times, shape (n,), returns states, shape (n, N).
     edges : array, shape (k + 1,)
         Times, s, increasing or decreasing.
-    blocks, scales
-        Edges and scales of the blocks of states, as for :func:`symrot.propagation.steppers.dop853.translation_unit`.
+    blocks : sequence of int
+        Edges of the blocks of states (omega, attitude): block k consists of the states from edge k up to edge k + 1.
+    scales : sequence of float
+        For each block, the least size to which its errors are relative: 1 for a quaternion, 0 for omega.
     depth, left : int, list of int
-        For recursive calls: number of halvings so far, and, in a list that is counted down, how many halves of pieces
-        may still be made.
+        For recursive calls: the number of halvings so far, and a list of one number, from which each call subtracts the
+        number of its polynomials. An error is raised if the number becomes negative.
     accuracy : float
         Error of the motion itself, relative to the largest values of the states between the edges. Where the steps of
         the motion do not join exactly, no fit can be closer. Recursive calls pass one error per state.
@@ -218,9 +220,10 @@ def fitted_pieces(
     blocks: Sequence[int],
     scales: Sequence[float],
 ) -> Generator[Piece, None, None]:
-    """Yield polynomials that agree with a motion from ``start`` to ``end``, s.
+    """Yield polynomials that follow a motion from ``start`` to ``end``, s, as closely as those of :func:`fitted`.
 
-    ``longest``, s, is a first guess of the time that one polynomial fits.
+    ``longest``, s, is a first guess of the time that one polynomial fits; ``blocks`` and ``scales`` are as for
+    :func:`fitted`.
     """
     side, t, most, count = math.copysign(1.0, end - start), start, 8.0 * longest, FEWEST
     while t != end:

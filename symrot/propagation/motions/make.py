@@ -62,9 +62,10 @@ def on_own_clock(plan: Plan, choice: Choice, tolerance: float) -> SteppedMotion 
 
 
 def with_full_state(plan: Plan, form: ClosedForm) -> Plan:
-    """Return a plan (the equations of a scene) without the rules that eliminate states, for a motion in closed form.
+    """Return a plan (the equations of a scene) for a motion in closed form, in which no state is eliminated.
 
-    The last rule of the result names the closed form ``form`` as the reason.
+    The rules that eliminate states are left out of the plan's list of rules; a last entry is added, whose reason is
+    that the motion has the closed form ``form``.
     """
     # a closed form gives all states at no cost, since nothing has to be integrated
     structure = plan.structure.unreduced()

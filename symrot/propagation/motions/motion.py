@@ -128,7 +128,7 @@ class Motion(ABC):
 
     @abstractmethod
     def follow(self, times: Floats, in_order: bool = False) -> tuple[Floats | tuple[Floats, ...], Stats]:
-        """Return the N states at n ``times`` of the scene, s, shape (n, N), and the cost.
+        """Return the N states at n ``times`` of the scene, s, shape (n, N), and the cost in steps and evaluations.
 
         A closed form returns omega and, if the attitude is computed, the quaternion as separate arrays in a tuple.
         ``in_order``: the times are finite and never decrease.
@@ -142,7 +142,7 @@ class Motion(ABC):
         """
 
     def integrate(self, times: Floats, in_order: bool = False) -> tuple[Floats, Stats]:
-        """Return the N states at n times of the scene, s, in one array, shape (n, N), and the cost of the motion."""
+        """Return the N states at n times of the scene, s, as one array, shape (n, N), and the steps and evaluations."""
         states, stats = self.follow(times, in_order)
         return np.concatenate(states, axis=1) if isinstance(states, tuple) else states, stats
 
@@ -162,7 +162,10 @@ class Motion(ABC):
         return lambda t: states(t - zero if zero else t)
 
     def solution(self, path: Callable[[Floats], Floats], with_attitude: bool) -> Callable[[ArrayLike], Floats]:
-        """Return a function from n times to omega, shape (3, n), or to omega and quaternion, shape (7, n)."""
+        """Return a function from n times, s, to omega, shape (3, n), or to omega and quaternion, shape (7, n).
+
+        The function evaluates these quantities from the states that ``path`` returns for the times.
+        """
         names = [f"omega_{i} of t" for i in (1, 2, 3)]
         names += [f"q{i} of t" for i in range(4)] if with_attitude else []
 
@@ -203,13 +206,13 @@ class ShiftableMotion(RestartableMotion):
 
     @abstractmethod
     def steps(self, times: Floats, in_order: bool) -> tuple[Floats, Stats]:
-        """Return the N states at n times, s after :attr:`epoch`, shape (n, N), and the cost.
+        """Return the N states at n times, s after :attr:`epoch`, shape (n, N), and the cost in steps and evaluations.
 
         ``in_order``: the times are finite and never decrease.
         """
 
     def follow(self, times: Floats, in_order: bool = False) -> tuple[Floats, Stats]:
-        """Return the N states at n times of the scene, s, shape (n, N), and the cost.
+        """Return the N states at n times of the scene, s, shape (n, N), and the cost in steps and evaluations.
 
         ``in_order``: the times are finite and never decrease.
         """

@@ -142,7 +142,7 @@ class SteppedSetup:
 
     @cached_property
     def integration(self) -> Integration:
-        """The integration from the initial state of the shared plan; motions from other initial states copy it."""
+        """The integration from the initial state of the setup's plan; motions from other initial states copy it."""
         # thus tolerance and library are checked only once
         setup, plan = self.setup, self.setup.plan
         parameters, state = setup.rate_binding(plan), plan.initial_state

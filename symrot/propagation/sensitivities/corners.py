@@ -39,7 +39,7 @@ def places_within(begin: float, times: Floats) -> Floats:
 def rests_at_corner(
     rates: Program, depends: Sequence[Sequence[str]], p: Sequence[float], times: Floats, samples: Floats
 ) -> bool:
-    """Return whether a motion stays where its rates have no derivatives by states or parameters.
+    """Return whether a motion stays where its rates are not differentiable by the states or parameters.
 
     The rates are examined at n arbitrary times. A motion that only passes a point without derivatives is there at a
     single time, which the arbitrary times miss.
@@ -77,10 +77,10 @@ def rests_at_corner(
 
 
 class _Number:
-    """A number with its derivatives by states and parameters; BENT, STEEP or EDGE stands for one that does not exist.
+    """A number with its derivatives by states and parameters.
 
-    BENT: difference quotients are bounded, as for ``|omega|`` at 0; STEEP: they are not; EDGE: nearby states have no
-    value.
+    BENT, STEEP or EDGE stands for a derivative that does not exist. BENT: its difference quotients are bounded, as for
+    ``|omega|`` at 0; STEEP: the quotients are not bounded; EDGE: for some nearby states the number has no value.
     """
 
     def __init__(self, value: float, slopes: Slopes, positive: bool = False, timed: bool = False) -> None:
@@ -88,9 +88,10 @@ class _Number:
         self.value, self.slopes, self.positive, self.timed = value, slopes, positive, timed
 
     def _zero(self, other: "_Number") -> bool:
-        """Return whether this number, times any derivative of ``other``, is zero, even if ``other`` has no derivative.
+        """Return whether a product rule's term, this number times a derivative of ``other``, is zero.
 
-        At omega = 0, for instance, ``omega_1*|omega|`` has the derivative 0, though ``|omega|`` has none.
+        The term may be zero even if the derivative does not exist: at omega = 0, ``omega_1*|omega|`` has the derivative
+        0, though ``|omega|`` has none.
         """
         if EDGE in other.slopes.values():
             return False

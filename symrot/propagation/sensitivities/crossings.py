@@ -129,22 +129,22 @@ class Crossings:
         return by if first is None else np.asarray(by - np.outer(later - f, rows[first]))
 
     def _at_once(self, interval: Interval, flips: dict[str, Flip], alone: bool) -> Floats | None:
-        """Return the jump of the derivatives, shape (7, m), where several functions (sign, ..) switch at one time.
+        """Return the jump of the states' derivatives by the variables, shape (7, m), at the end of ``interval``.
 
-        Return None if the jump can be computed as for one function: only one switches; or the times of all switches
-        have the same derivatives by the variables; or the other functions switched in the switch before, which is
-        earlier by no more than rounding errors.
+        Several functions (sign, ..) may switch at this time. Return None if the jump can be computed as for one
+        function: if only one switches, if the times of all switches have the same derivatives by the variables, or if
+        the last switch before was earlier by no more than rounding errors, so that its jump is already computed.
 
         The order of the switches must not matter: raise PropagationError unless the switch of each function changes the
-        rates by the same amount whether or not the others have switched, and does not change the speeds of the
-        arguments of the others.
+        rates by the same amount whether or not the others have switched, and does not change the time derivatives of
+        the arguments of the others.
 
         Parameters
         ----------
         interval : Interval
             The interval at whose end the functions switch.
         flips : mapping
-            For each function, named by its mode (the number that replaces it in formulas): its switch.
+            A function's mode (name of the number that replaces the function in formulas) -> the switch of the function.
         alone : bool
             Whether no function other than those in ``flips`` switches, and no argument is held at zero from then on.
         """
@@ -188,7 +188,7 @@ class Crossings:
     def _append_switches(self, instant: Instant, rows: Mapping[str, Floats], others: Floats | None) -> None:
         """Append the switches at an instant to :attr:`switchings`, with the m derivatives of their time.
 
-        ``rows`` is a map from the mode of a switching function (the number that replaces the function in formulas) to
+        ``rows`` is a map from the mode of a switching function (name of the number that replaces it in formulas) to
         its m derivatives. ``others`` are the derivatives for every function that is not in ``rows``; None stands for
         NaN.
         """
@@ -202,10 +202,10 @@ class Crossings:
 
 
 def jumps_at_end(guards: Guards, interval: Interval) -> NDArray[np.bool_]:
-    """Return, for each of the m variables, whether the derivatives of the states by it may jump at the end of a motion.
+    """Return, for each of m variables, whether the states' derivatives by the variable may jump at the end of a motion.
 
-    They may if a function such as sign switches exactly there. ``interval`` is the last smooth interval of the motion;
-    the variables are those of ``guards``.
+    The derivatives may jump if a function such as sign switches exactly there. ``interval`` is the last smooth interval
+    of the motion; the variables are those of ``guards``.
     """
     jumps = np.zeros(len(guards.parameter_slopes.columns), dtype=np.bool_)
     f = guards.rates(interval, interval.stop, interval.last)

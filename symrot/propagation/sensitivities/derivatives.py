@@ -61,7 +61,7 @@ def variation(scene: Scene, keys: Sequence[str], times: Floats) -> Sensitivities
 
 
 def event_slopes(scene: Scene, keys: Sequence[str], result: EventResult, tolerance: float) -> tuple[Floats, ...]:
-    """Return one array for each event: derivatives of its k times by the m variables ``keys``, shape (k, m).
+    """Return for each event the derivatives of its k times by the m variables that ``keys`` names, shape (k, m).
 
     ``tolerance`` is the error of the motion of ``result``.
     """

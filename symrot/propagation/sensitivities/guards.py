@@ -58,9 +58,9 @@ class Gradient(NamedTuple):
         return abs(self.time) + float(np.abs(self.states) @ np.abs(rates))
 
     def change(self, slopes_of_states: Floats) -> Floats:
-        """Return the m total derivatives of the formula by the variables, on which the states depend, too.
+        """Return the m derivatives of the formula by the variables at a fixed time, directly and through the states.
 
-        ``slopes_of_states`` has the derivatives of the states, shape (7, m); the time is fixed.
+        ``slopes_of_states`` has the derivatives of the states by the variables, shape (7, m).
         """
         return np.asarray(self.states @ slopes_of_states + self.variables)
 
@@ -89,7 +89,7 @@ class Guards:
         self._require_settled()
 
     def _require_settled(self) -> None:
-        """Raise InputError if a variable moves the argument of a function away from a jump or kink of the function.
+        """Raise InputError if a function's argument lies at a jump or kink and changes with one of the variables.
 
         Only arguments without time and states are examined, such as that of ``sign(c - 1)`` for c = 1: the function
         never switches during the motion, but a change of the constant c changes its value.
@@ -109,9 +109,9 @@ class Guards:
         return self._by_name[mode].label
 
     def is_floor(self, mode: str) -> bool:
-        """Return whether ``mode``, the number that replaces a function in formulas, stands for floor or mod.
+        """Return whether a function is floor or mod; ``mode`` names the number that replaces it in formulas.
 
-        With its present value n, floor(x) switches where x - n is 0 or 1.
+        A function floor(x) with the present value n switches where x - n is 0 or 1.
         """
         return self._by_name[mode].kind == "floor"
 
@@ -126,8 +126,8 @@ class Guards:
     def twins(self, mode: str) -> list[tuple[str, int]]:
         """Return the functions that switch together with the function of ``mode``, as pairs (mode, 1 or -1).
 
-        A mode is the number that stands for a function such as sign(x). The list includes the pair of ``mode`` itself;
-        1 or -1 is the sign of the argument relative to the argument of the first pair.
+        A mode is the name of the number that replaces a function such as sign(x) in formulas. The list includes the
+        pair of ``mode`` itself; 1 or -1 is the sign of the argument relative to the argument of the first pair.
         """
         return self.system.twins.get(mode, [(mode, 1)])
 
@@ -182,7 +182,7 @@ class Guards:
     def guard(self, interval: Interval, mode: str, t: float, y: Floats) -> Gradient:
         """Return the argument of the function (sign, abs, ..) for which ``mode`` stands, with its derivatives.
 
-        For floor(x) the result is x minus the present floor.
+        For floor(x) the result is x - n, where n is the present value of the function.
         """
         inputs = self._duals(interval.regime.parameters, interval, t, y, "guards")
         return self._gradient(evaluate(interval.regime.formulas[mode], inputs, DUALS, float))

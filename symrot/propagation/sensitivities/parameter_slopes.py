@@ -91,7 +91,7 @@ class ParameterSlopes:
     def require_constant(
         self, formula: Node, constants: Mapping[str, Fraction], ends: Sequence[int], label: str
     ) -> None:
-        """Raise InputError if the argument of a function lies at a jump or kink, and a variable moves it away.
+        """Raise InputError if a function's argument lies at a jump or kink and changes with one of the variables.
 
         ``formula`` is the argument, without states; the jumps and kinks are at its values ``ends``. ``label`` is the
         function in messages, such as ``"sign(c - 1)"``.

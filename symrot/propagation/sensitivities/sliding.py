@@ -20,10 +20,11 @@ Floats = NDArray[np.float64]
 
 
 def beside(guards: Guards, interval: Interval, signs: Mapping[str, int]) -> Interval:
-    """Return a copy of an interval of the motion in which some held functions sign(x) have fixed values.
+    """Return a copy of an interval of the motion in which some functions sign(x) have fixed values.
 
-    In the interval itself x is held at zero. ``signs`` is a map from the modes of these functions to 1 or -1. The rates
-    of the copy are those on one side of the jump at x = 0, along which the motion slides.
+    In the interval itself x stays at zero: the motion slides along the jump at x = 0. In the copy, the rates are those
+    on one side of this jump. ``signs`` is a map from the mode of each such function (name of the number that replaces
+    the function in formulas) to its value, 1 or -1.
     """
     twins = guards.system.twins
     modes = {**interval.modes, **{twin: own * sign for mode, sign in signs.items() for twin, own in twins[mode]}}
@@ -32,11 +33,11 @@ def beside(guards: Guards, interval: Interval, signs: Mapping[str, int]) -> Inte
 
 
 def hold_at_rest(guards: Guards, interval: Interval) -> None:
-    """Change the equations of an interval so that they hold the guards that stay at zero in the interval.
+    """Change the equations of an interval so that they keep guards at zero that stay at zero in the interval.
 
-    A guard is the argument of sign, abs, .. The modes of guards that the equations cannot hold are appended to
-    ``interval.resting``. A guard is left alone if the rates and their derivatives are the same on both sides of its
-    zero.
+    A guard is the argument of a function (sign, abs, ..). Where the equations cannot keep the guard at zero, the name
+    of the function's mode, the number that replaces the function in formulas, is appended to ``interval.resting``. A
+    guard is left alone if the rates and their derivatives are the same on both sides of its zero.
     """
     resting = [mode for mode in interval.regime.formulas if mode not in interval.held and rests(guards, interval, mode)]
     for mode in resting:
@@ -60,11 +61,11 @@ def hold_at_rest(guards: Guards, interval: Interval) -> None:
 def refuse_resting(
     guards: Guards, interval: Interval, integrate: Callable[[Interval, Floats], tuple[Floats, Floats]]
 ) -> None:
-    """Raise PropagationError if a variable moves a guard of ``interval.resting`` away from zero.
+    """Raise PropagationError if a guard in ``interval.resting`` leaves zero when one of the variables changes.
 
-    These guards, arguments of functions such as sign, stay at zero in the interval, though the equations do not hold
-    them there. If a guard is moved, its function jumps or bends, and the motion has no derivatives. ``integrate`` takes
-    an interval and times, and returns the states and their derivatives at these times.
+    These guards, arguments of functions such as sign, stay at zero in the interval, though the equations do not keep
+    them there. If a guard leaves zero, its function jumps or bends, and the motion has no derivatives. ``integrate``
+    takes an interval and times, and returns the states and their derivatives at these times.
     """
     for mode in interval.resting:
         places = list(interval.places())
@@ -74,7 +75,10 @@ def refuse_resting(
 
 
 def rests(guards: Guards, interval: Interval, mode: str) -> bool:
-    """Return whether the argument of a function (sign, abs, ..) is zero in an interval: at start, middle and end."""
+    """Return whether the argument of a function (sign, abs, ..) is zero at start, middle and end of an interval.
+
+    ``mode`` is the name of the number that replaces the function in formulas.
+    """
     return all(guards.guard(interval, mode, *place).value == 0.0 for place in interval.places())
 
 
@@ -96,11 +100,11 @@ def _is_smooth_at(guards: Guards, interval: Interval, mode: str) -> bool:
 
 
 def require_one_surface(guards: Guards, interval: Interval, mode: str, t: float, y: Floats) -> None:
-    """Raise PropagationError if a sign or abs and another function switch together, but only by chance.
+    """Raise PropagationError if two functions switch together now, but apart after a small change of a variable.
 
-    The first function is that of ``mode``, the number that replaces it in formulas. Example: sign(omega_3 - c) and
-    sign(omega_3 - d) with c = d. After a change of time, state or variable the arguments are zero at different times,
-    and a motion cannot slide along both jumps.
+    One is a sign or abs; ``mode`` is the name of the number that replaces it in formulas. Example: sign(omega_3 - c)
+    and sign(omega_3 - d) with c = d. If c changes alone, the arguments are zero at different times, and a motion cannot
+    slide along both jumps.
     """
     guard = guards.guard(interval, mode, t, y)
     own = np.array([guard.time, *guard.states, *guard.variables])

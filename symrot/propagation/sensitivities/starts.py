@@ -64,11 +64,11 @@ def from_start(guards: Guards, interval: Interval, by: Floats) -> Floats:
 
 
 def _require_constant(guards: Guards, interval: Interval, mode: str, other: int, change: Floats, f: Floats) -> None:
-    """Raise PropagationError if a motion starts at a jump of its rates, and a variable moves the start off the jump.
+    """Raise PropagationError if a motion starts at a jump of its rates and a variable shifts the start off the jump.
 
-    The jump is that of a function (sign, floor, ..) with the mode ``mode``, whose argument is now at the jump.
-    ``change``: the m derivatives of the argument by the variables; ``f``: the rates of the motion at its start;
-    ``other``: the value of floor(x) on the other side of the jump.
+    The jump is that of a function (sign, floor, ..); ``mode`` is the name of the number that replaces it in formulas.
+    ``change``: the m derivatives of the function's argument by the variables; ``f``: the rates at the start; ``other``:
+    for floor(x), the value on the other side of the jump, otherwise not used.
     """
     if not change.any() or guards.is_continuous(mode):
         return

@@ -23,7 +23,8 @@ Floats = NDArray[np.float64]
 class SwitchedEquations:
     """The equations of a motion under torques that switch, and of its derivatives by variables.
 
-    The variables are initial values and constants of the scene, as ``keys`` names them; they have m components.
+    The argument ``keys`` names initial values and constants of the scene, such as ``"omega"`` or ``"body.mass"``. Their
+    m components are the variables.
     """
 
     def __init__(self, scene: Scene, keys: Sequence[str], varying: Collection[str] = ()) -> None:
@@ -57,7 +58,7 @@ class SwitchedEquations:
         return states, by
 
     def event_slopes(self, scene: Scene, result: EventResult, tolerance: float) -> tuple[Floats, ...]:
-        """Return one array for each event: derivatives of its k times by the m variables, shape (k, m).
+        """Return for each event the derivatives of the k times of this event by the m variables, shape (k, m).
 
         ``tolerance`` is the error of the motion of ``result``.
         """

@@ -86,7 +86,8 @@ def _with_formulas(scene: Scene) -> Scene:
 class TableEquations:
     """The equations of a motion under a torque given by a table of samples, and of its derivatives by variables.
 
-    The variables are initial values and constants of the scene, as ``keys`` names them; they have m components.
+    The argument ``keys`` names initial values and constants of the scene, such as ``"omega"`` or ``"body.mass"``. Their
+    m components are the variables.
     """
 
     def __init__(self, scene: Scene, keys: Sequence[str]) -> None:
@@ -183,7 +184,10 @@ class TableEquations:
         )
 
     def _numbers(self, k: int) -> tuple[dict[str, float], Rows]:
-        """Return two dicts: the values of the parameters in interval k of the table, and their derivatives, by name."""
+        """Return two dicts for interval k of the table: parameter -> value, and parameter -> its m derivatives.
+
+        The derivatives are by the variables; parameters that depend on no variable are missing in the second dict.
+        """
         if k not in self._bound:
             if len(self._bound) >= MOST_BOUND:
                 self._bound.clear()
@@ -194,7 +198,7 @@ class TableEquations:
         return self._bound[k]
 
     def event_slopes(self, scene: Scene, result: EventResult, tolerance: float) -> tuple[Floats, ...]:
-        """Return one array for each event: derivatives of its k times by the m variables, shape (k, m).
+        """Return for each event the derivatives of the k times of this event by the m variables, shape (k, m).
 
         ``tolerance``, the error of the motion of ``result``, matters only for torques that switch.
         """
@@ -241,7 +245,7 @@ class _Pieces:
         self._polynomials = np.concatenate([np.moveaxis(spline.c, 0, 2) for spline in splines]).reshape(-1, 12)
 
     def at(self, t: float, side: float) -> int:
-        """Return the number of the interval that a motion enters at the time t, s; ``side`` is -1 backward in time."""
+        """Return the index of the interval that a motion enters at the time t, s; ``side`` is -1 backward in time."""
         k = int(np.searchsorted(self.edges, t, "right" if side > 0.0 else "left")) - 1
         return min(max(k, 0), len(self.edges) - 2)
 
@@ -258,9 +262,9 @@ def _unit_table(table: Table, place: int, axis: int) -> Table:
 
 
 def _sample_of(scene: Scene, variable: Variable) -> tuple[int, int] | None:
-    """Return which number of a torque's table of samples a variable is: (index of sample, index of component), from 0.
+    """Return the place of a variable in a torque's table of samples: (index of sample, index of component), from 0.
 
-    Return None for a variable that does not belong to the table.
+    Return None if the variable does not belong to the table.
 
     Raises
     ------
@@ -279,10 +283,11 @@ def _sample_of(scene: Scene, variable: Variable) -> tuple[int, int] | None:
 
 
 def _replaced(variable: Variable, sample: tuple[int, int] | None) -> Variable:
-    """Return ``variable`` as a variable of the scene in which formulas replace the table of samples.
+    """Return ``variable`` adapted to the scene in which formulas replace the table of samples.
 
-    A sample of the table (``sample`` is not None) does not occur in that scene, so that a change of the returned
-    variable does not change the scene. How a sample changes the coefficients of the formulas is computed elsewhere.
+    Its function ``moved``, which returns the scene after a change of the variable, then returns a scene with formulas.
+    If the variable is a sample of the table (``sample`` is not None), ``moved`` ignores the change: how a sample
+    changes the coefficients of the formulas is computed elsewhere.
     """
     moved = variable.moved
     if moved is None:

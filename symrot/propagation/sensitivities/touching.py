@@ -44,8 +44,8 @@ def refuse_touching(guards: Guards, interval: Interval) -> None:
 def _touching(guards: Guards, interval: Interval, mode: str) -> float | None:
     """Return the first time, s after ``interval.zero``, at which the argument of a function touches zero.
 
-    The function (sign, floor, ..) is that for which ``mode`` stands; the argument of floor touches whole numbers.
-    Return None if the argument does not touch zero.
+    ``mode`` is the name of the number that replaces the function (sign, floor, ..) in formulas. For floor, the time is
+    that at which the argument touches a whole number. Return None if there is no such time.
     """
     values, _ = guards.bound(interval.regime.parameters, interval, "guards")
     constants = {**{name: float(value) for name, value in interval.modes.items()}, **values}

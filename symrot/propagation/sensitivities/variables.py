@@ -133,7 +133,7 @@ def read_variables(scene: Scene, keys: Sequence[str]) -> list[Variable]:
 
 
 def groups_of(variables: Sequence[Variable]) -> dict[str, tuple[int, ...]]:
-    """Return the numbers of the variables for each requested name: ``{"omega": (0, 1, 2), "weight": (3,)}``."""
+    """Return the indices of the variables for each requested name: ``{"omega": (0, 1, 2), "weight": (3,)}``."""
     groups: dict[str, tuple[int, ...]] = {}
     for place, variable in enumerate(variables):
         groups[variable.key] = (*groups.get(variable.key, ()), place)
@@ -234,9 +234,10 @@ def difference(scene: Scene, variable: Variable, numbers: Callable[[Scene], Numb
 
 
 def slopes(values: Callable[[Fraction], Numbers], step: Fraction, name: str) -> dict[str, Fraction]:
-    """Return the derivatives of numbers by a change of a variable, without the numbers that do not depend on it.
+    """Return a map from names of numbers to their derivatives by a variable.
 
-    ``values`` takes this change: if it returns {"A": (3 + change)^2}, the result is {"A": 6}.
+    ``values`` is a function that takes a change of the variable: if it returns {"A": (3 + change)^2}, the result is
+    {"A": 6}. Numbers that do not depend on the variable are left out.
 
     Raises
     ------
@@ -286,7 +287,7 @@ class _Differences:
         raise InputError(f"sensitivities: expected a scene that stays valid if {name} changes, got {refusal}")
 
     def at(self, place: int) -> Numbers:
-        """Return the numbers, by name, after a change of the variable by ``place`` steps from its present value."""
+        """Return a map from names to numbers for the variable's present value plus ``place`` steps."""
         if place not in self._points:
             self._points[place] = self._values(place * self._step)
         return self._points[place]

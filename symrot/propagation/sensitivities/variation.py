@@ -82,7 +82,7 @@ class Column:
         self.constants = every
 
     def start_from(self, initial: Initial) -> list[float]:
-        """Return the derivatives by :attr:`variable` of an initial state: of omega and the quaternion, 7 numbers."""
+        """Return the derivatives of an initial state (omega and quaternion, 7 numbers) by :attr:`variable`."""
         # only those by a small rotation of the attitude depend on the initial state
         if self.variable.moved is not None:
             return self.start
@@ -160,7 +160,8 @@ def structure_of(scene: Scene, columns: Sequence[Column], varying: Collection[st
 class SmoothEquations:
     """The compiled equations of a scene's motion, from any initial state, and of its derivatives by variables.
 
-    The variables are initial values and constants of the scene, as ``keys`` names them; they have m components.
+    The argument ``keys`` names initial values and constants of the scene, such as ``"omega"`` or ``"body.mass"``. Their
+    m components are the variables.
     """
 
     def __init__(self, scene: Scene, keys: Sequence[str]) -> None:
@@ -190,7 +191,7 @@ class SmoothEquations:
         return results[0][0], np.concatenate([slopes for _, slopes in results], axis=2)
 
     def event_slopes(self, scene: Scene, result: EventResult, tolerance: float) -> tuple[Floats, ...]:
-        """Return one array for each event: derivatives of its k times by the m variables, shape (k, m).
+        """Return for each event the derivatives of the k times of this event by the m variables, shape (k, m).
 
         ``tolerance``, the error of the motion of ``result``, matters only for torques that switch.
         """
@@ -292,15 +293,15 @@ def follow_columns(
     library : MotionLibrary
         The code that integrates motion and derivatives.
     values, slopes : sequences
-        The parameters of the rates, and for each variable the derivatives of those that depend on it.
+        The parameters of the rates; and for each variable, the derivatives by it of the parameters that depend on it.
     start, starts : sequences
-        The states at the time ``begin``, and for each variable their derivatives.
+        The states at the time ``begin``; and for each variable, the derivatives of the states by it.
     units : m numbers
         For each variable, a power of two near its size, by which its derivatives are multiplied during integration.
     begin : float
         Initial time, s, on the clock of the library.
     times : array, shape (n,)
-        Sample times, s, on that clock.
+        Sample times, s, on the same clock.
     labelled : function
         Takes the error of a motion that stops early, and returns the error to raise.
     """
@@ -344,18 +345,18 @@ def follow_interval(
     Parameters
     ----------
     libraries : iterable of (range, sequences of str, MotionLibrary)
-        For each group of variables: their numbers, the names of the parameters that depend on each, and the code that
-        integrates the motion and the derivatives by them.
+        For each group of variables: their indices from 0 to m - 1, the names of the parameters that depend on each
+        variable, and the code that integrates the motion and its derivatives by these variables.
     parameters : pairs of name and formula
         The parameters of the rates, in order.
     values, rows : mappings
-        The values of the parameters, and their derivatives by each variable, by name.
+        Name of a parameter -> its value; name of a parameter -> its m derivatives, if it depends on a variable.
     y, by : arrays, shapes (7,) and (7, m)
-        States and derivatives at the time ``begin``.
+        States, and their derivatives by the variables, at the time ``begin``.
     units : list of m floats
         As for :func:`follow_columns`; the list is changed in place to the units used last.
     begin, times, labelled
-        As for :func:`follow_columns`.
+        As for :func:`follow_columns`: initial time, sample times, and the function that returns the error to raise.
     """
     numbers, results = [values[name] for name, _ in parameters], []
     for places, depends, library in libraries:
@@ -372,9 +373,9 @@ def follow_interval(
 
 
 def groups_of_columns(count: int) -> Iterator[range]:
-    """Yield the numbers 0 to ``count - 1`` of variables in ranges of at most :data:`AT_ONCE`, one for each library.
+    """Yield the indices 0 to ``count - 1`` of variables in ranges of at most :data:`AT_ONCE` indices.
 
-    A library integrates the derivatives by the variables of one range.
+    One compiled library integrates the derivatives by the variables of one range.
     """
     for first in range(0, count, AT_ONCE):
         yield range(first, min(first + AT_ONCE, count))
@@ -394,9 +395,10 @@ def unit_of(scene: Scene, column: Column) -> float:
 
 
 def fitting_unit(unit: float, by: Floats) -> float:
-    """Return ``unit``, by which the derivatives ``by`` are to be multiplied, or a smaller power of two.
+    """Return a factor for the derivatives ``by``: ``unit``, or a power of two if ``unit`` is too large.
 
-    A smaller one is returned if the largest product exceeds 2; with it, the largest product is between 1 and 2.
+    ``unit`` is too large if its product with a derivative exceeds 2. With the power of two, the largest product is at
+    least 1 and less than 2.
     """
     largest = float(np.abs(by).max())
     return ldexp(1.0, 1 - frexp(largest)[1]) if largest * unit > 2.0 else unit

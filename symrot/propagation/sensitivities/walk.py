@@ -92,7 +92,10 @@ class Walk:
             previous = interval
 
     def _integrate(self, interval: Interval, times: Floats) -> tuple[Floats, Floats]:
-        """Return states and derivatives, (n, 7) and (n, 7, m), at times of an interval, s after its ``zero``."""
+        """Return the states at n times of an interval, shape (n, 7), and their derivatives by m variables, (n, 7, m).
+
+        The times are s after ``interval.zero``.
+        """
         program, parameters = self.guards.program(interval)
         values, rows = self.guards.bound(parameters, interval, "rates")
         libraries = []
@@ -114,9 +117,10 @@ class Walk:
         return named
 
     def sample(self, times: Floats) -> tuple[Floats, Floats]:
-        """Return states, (n, 7), and derivatives, (n, 7, m), at n times of the scene, s, between start and end.
+        """Return the states at n times of the scene, shape (n, 7), and their derivatives by m variables, (n, 7, m).
 
-        The start itself is excluded. Derivatives are NaN exactly at a switch at which they jump.
+        The times, s, lie between start and end of the motion; the start itself is excluded. Derivatives are NaN exactly
+        at a switch at which they jump.
         """
         order = np.argsort(self.side * times, kind="stable")
         ordered, count = times[order], 0
@@ -145,8 +149,8 @@ class Walk:
     def sides(self, t: float, tolerance: float) -> list[tuple[Floats, Floats, Floats]]:
         """Return (state, rates, derivatives) at the time t, s: one triple, or two at a switch, before and after it.
 
-        The time counts as that of a switch if their distance is no more than the error, in s, that a motion with this
-        tolerance may cause.
+        The derivatives are those of the state by the variables. The time t counts as the time of a switch if the two
+        differ by no more than the error, in s, that a motion with the tolerance ``tolerance`` may cause.
         """
         for place, interval in enumerate(self.intervals[:-1]):
             following = self.intervals[place + 1]

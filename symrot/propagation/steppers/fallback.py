@@ -122,7 +122,7 @@ class Options:
         short pulse.
     clock : callable, optional
         A :data:`Clock`: takes an epoch, s, and returns the right-hand side that takes the time since the epoch, and its
-        parameters. With it, steps that are short compared with their time keep their digits.
+        parameters. Thus a step at a late time t keeps its digits, even if it is very short compared with t.
     whole : WholeMotion, optional
         The whole motion, if only a part of it is followed. Then ``max_steps`` is the limit for the whole motion.
     """
@@ -141,7 +141,7 @@ class Options:
 def integrate(
     rhs: Rhs, p: ArrayLike, y0: ArrayLike, t0: float, times: ArrayLike, tolerance: float, options: Options = Options()
 ) -> tuple[Floats, Stats]:
-    """Return the N states at the n sample times, shape (n, N), and the cost of the motion.
+    """Return the N states at the n sample times, shape (n, N), and the cost in steps and evaluations.
 
     Parameters
     ----------
@@ -208,7 +208,7 @@ class FallbackRecording(Recording):
     def edges(self, start: float, end: float) -> list[Floats]:
         """Return the ends of SciPy's steps, s, one array for each smooth part of the motion from ``start`` to ``end``.
 
-        A part of which only a piece lies between these times is left out.
+        Only the smooth parts that lie entirely between these times are included.
         """
         side = 1.0 if end >= start else -1.0
         chosen = [
@@ -231,7 +231,10 @@ def _evaluate(pieces: list[Piece], times: Floats, states: Floats) -> None:
 
 
 class _ShiftedSolution:
-    """SciPy's interpolant of one step, called with times on the motion's clock instead of times since ``epoch``, s."""
+    """SciPy's interpolant of one step, as a function of the time of the motion, s.
+
+    The interpolant that is wrapped takes the time since ``epoch``, s.
+    """
 
     def __init__(self, solution: Any, epoch: float) -> None:
         self._solution, self._epoch = solution, epoch
@@ -355,10 +358,13 @@ class _Integration:
         return self.pieces
 
     def _follow_segment(self, segment: Segment, y: Floats, rtol: float, atol: Floats, bars: list[float]) -> None:
-        """Integrate over a segment from the state ``y``, and append SciPy's solution to ``pieces``."""
+        """Integrate over a segment from the state ``y``, and append SciPy's solution to ``pieces``.
+
+        ``bars``: for each block of states (omega, attitude), the largest error that a step may have because it misses a
+        change of the rates, such as a short pulse.
+        """
         import scipy.integrate
 
-        # bars: for each block of states, the largest error by which a step may overlook a part of the rates
         earliest, latest = min(segment.first, segment.last), max(segment.first, segment.last)
         new_solver: Any = getattr(scipy.integrate, self.method)
 
@@ -472,9 +478,11 @@ class _Integration:
         return self.work + (self.whole.spent if self.whole else 0)
 
     def _proven(self, t: float, y: Floats, dense: Any, now: float, step: float, bars: list[float]) -> float:
-        """Return the length of the part of a step, s, that is proven not to pass over a short pulse of a torque."""
-        # The step begins with states y at scene time t, which is now on the clock; dense is SciPy's interpolant. bars:
-        # for each block of states, the largest error by which a step may overlook a part of the rates.
+        """Return the length, s, at most ``step``, up to which a step's error from a missed pulse is proven small.
+
+        The step begins with the states ``y`` at the scene time ``t``, when SciPy's clock shows ``now``; ``dense`` is
+        SciPy's interpolant. ``bars``: for each block of states (omega, attitude), the largest error allowed.
+        """
         assert self.deviations is not None
         path = np.abs(_FIT @ (dense(now + _NODES * step).T - y)).T.tolist()
         edges = [0, *(block.stop for block, _ in self.blocks)]

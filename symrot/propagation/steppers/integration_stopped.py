@@ -28,7 +28,10 @@ class IntegrationStopped(PropagationError):
         self.recording: Any = None  # the motion before t, if it was being recorded
 
     def __reduce__(self) -> tuple[Any, ...]:
-        """Return class and arguments for pickle, by which processes pass on the error, without the samples."""
+        """Return (class, arguments), from which pickle creates a copy of the error in another process.
+
+        The copy has no ``samples`` and no ``recording``.
+        """
         return IntegrationStopped, (self.t, self.reason, self.stop)
 
     def later(self, epoch: float) -> "IntegrationStopped":

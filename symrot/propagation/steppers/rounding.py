@@ -31,18 +31,24 @@ class RoundingSum:
         self.beyond: float | None = None
 
     def add(self, t: float, error: float, size: float) -> None:
-        """Add the bound ``error`` of a step at the time t, s; ``size`` is the size of the states in the step."""
+        """Add to the sum the rounding error of a step at the time t, s, which is at most ``error``.
+
+        ``size`` is the size of the states in the step. The sum is compared with the tolerance times the largest size.
+        """
         self.squares += error * error
         self.size = max(self.size, size)
         if self.beyond is None and math.sqrt(self.squares) > WARNED * self.tolerance * self.size:
             self.beyond = t
 
     def fields(self) -> dict[str, float]:
-        """Return the sum of errors so far, as fields of the struct with which a run in C adds further errors."""
+        """Return the sum so far as fields of the struct of a run in C, which adds the errors of further steps.
+
+        The dict has the keys ``"rounded"`` (sum of the squares) and ``"largest"`` (size).
+        """
         return {"rounded": self.squares, "largest": self.size}
 
     def read(self, run: Any) -> None:
-        """Take over the sum from a run in C that has continued it."""
+        """Replace the sum by that of the C struct ``run``, which has added the errors of further steps."""
         self.squares, self.size = run.rounded, run.largest
         if self.beyond is None and not math.isnan(run.rounded_from):
             self.beyond = run.rounded_from

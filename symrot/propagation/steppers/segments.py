@@ -53,7 +53,7 @@ def segments(t0: float, end: float, breaks: Sequence[float]) -> list[Segment]:
 def _inside(edge: float, other: float) -> float:
     """Return a time just inside a segment, next to its end ``edge``; ``other`` is the time of its other end.
 
-    If a torque jumps at ``edge``, it has at the returned time its value on this side of the jump.
+    If a torque jumps at ``edge``, its value at the returned time is the value inside the segment.
     """
     # too near the edge to affect the choice of the first step
     time = edge + SLIVER * (other - edge)

@@ -66,7 +66,7 @@ class Stats(NamedTuple):
     def later(self, epoch: float) -> "Stats":
         """Return the statistics of an integration with :attr:`rounded_beyond` converted to scene times.
 
-        ``epoch``, s, is added to these times. An integration has no switching times.
+        ``epoch``, s, is added to these times. Times of switches need no conversion: an integration alone records none.
         """
         return self._replace(rounded_beyond=tuple([t + epoch for t in self.rounded_beyond]))
 

@@ -294,7 +294,7 @@ class Integration:
         return stats_of(counts, perf_counter() - self.began, (), self.rounded_beyond)
 
     def sample(self, times: ArrayLike) -> tuple[Floats, Stats]:
-        """Return the states at sample times, s, in any order, shape (n, N), and the cost of the motion.
+        """Return the states at sample times, s, in any order, shape (n, N), and the cost in steps and evaluations.
 
         Raises
         ------
@@ -413,7 +413,10 @@ class Integration:
         return pieces
 
     def runs(self, end: float) -> Generator[Run, None, None]:
-        """Yield the run once per segment between switching times, for the caller to :meth:`advance` to its end."""
+        """Yield the same run, the state of the C code, once for each segment between switching times.
+
+        The caller must :meth:`advance` the run to the end of the segment before asking for the next one.
+        """
         stepper, self.goal = self.stepper, end
         pace = (self.way or abs(end - self.t0)) * self.pace
         fields = self.fields if self.rounding is None else {**self.fields, **self.rounding.fields()}
@@ -434,7 +437,7 @@ class Integration:
                 self.rounding.read(run)
 
     def step_function(self, run: Run) -> tuple[Callable[..., Any], Any, int]:
-        """Return the C function that continues a run, the parameters of its kernel, and the most steps per call."""
+        """Return the C function that continues a run, the kernel's parameters, and the limit of steps per call."""
         # a subclass may return others in the course of a run
         return self.stepper.run, self.p, self.stepper.steps_per_call
 

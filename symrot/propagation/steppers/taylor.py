@@ -62,9 +62,10 @@ ORDERS = {  # for few and for many products: least tolerance, and the fastest or
 
 
 def step_tail(tolerance: float) -> tuple[float, float]:
-    """Return a limit for the last terms of a step's Taylor series, and the step length for which the limit holds.
+    """Return a limit for the last terms of a step's Taylor series, and the shortest step that may use the whole limit.
 
-    The length is given as a fraction of the time for which the motion is computed.
+    The step length is given as a fraction of the time for which the motion is computed. A shorter step has a smaller
+    limit.
     """
     # The stepper multiplies the limit by r^(7/4) in a step that is r times as long. For n equal steps, r is
     # proportional to 1/n, and their errors add up to about n^(7/4) times one of them: the final error hardly depends

@@ -73,8 +73,8 @@ class Guards(RunState):
     def _guard_value(self, mode: str, place: tuple[float, Floats] | None = None) -> float:
         """Return the value of a switching function's argument, now or at ``place``, a pair (time, states).
 
-        ``mode`` is the name that stands for the function's value in formulas. For floor(x) the result is x minus the
-        present floor.
+        ``mode`` is the name of the number that replaces the function in formulas. For floor(x) the result is x - n,
+        where n is the present value of the function.
         """
         # the floor is its value n in the present equations: it changes where x - n is 0 or 1
         regime = self._regime(self.modes)
@@ -109,8 +109,8 @@ class Guards(RunState):
     def _oriented(self, regime: Regime, guard: Guard, place: tuple[float, Floats]) -> float:
         """Return the value of a guard's formula at ``place``, a pair (time, states); NaN if it has no value there.
 
-        The formula decreases through zero where a function (sign, floor, ..) switches, which ends the motion
-        ``regime``.
+        The formula is written so that it decreases through zero where a function (sign, floor, ..) switches. The switch
+        ends the smooth motion ``regime``.
         """
         try:
             return float_value(parse(guard.formula), self._values(regime, place))
@@ -135,8 +135,8 @@ class Guards(RunState):
     ) -> tuple[list[Guard], list[Guard]]:
         """Return two lists of guards: negative just after the start of ``piece``, and negative at its end.
 
-        A guard is a formula that turns negative where a function (sign, floor, ..) switches; ``active`` says for each
-        guard of ``regime`` whether its zero ends the regime.
+        A guard is a formula that turns negative where a function (sign, floor, ..) switches. ``active`` says for each
+        guard of the smooth motion ``regime`` whether its zero ends this motion; other guards are left out.
         """
         formulas = [guard.formula for guard in regime.guards]
         # such a function should have switched before the piece or within it; active: guards that can end the regime

@@ -38,7 +38,10 @@ number that replaces the function in formulas.
 
 
 class ModeChanges(Guards):
-    """The changes of modes, numbers that stand for functions (sign, abs, ..), at the present time of a motion."""
+    """Part of the computation of a motion: changes the values of switching functions (sign, abs, ..) at a switch.
+
+    A function's mode is the number that replaces the function in formulas, such as 1 for sign(x) while x > 0.
+    """
 
     def __init__(self, motion: Motion, system: SwitchedSystem, end: float) -> None:
         super().__init__(motion, system, end)
@@ -64,16 +67,16 @@ class ModeChanges(Guards):
             raise IntegrationStopped(self.t, f"the torque switches again and again without end ({within})", self.end)
 
     def _forget_changes(self) -> None:
-        """Clear all lists of functions that switched at the present time, because the motion goes on from it."""
+        """Clear the lists of functions that switched at the present time; call this when the motion continues."""
         self.flipped, self.order = {}, []
         self.left, self.visited, self.released, self.rested = set(), {}, set(), set()
 
     def _coincident(self, regime: Regime, active: list[bool], values: list[float], most: int) -> Guard | None:
         """Return the guard of a function (sign, floor, ..) that switches at the present time but has not switched yet.
 
-        The formula of the guard is then negative just after the present time or, if ``most`` is 0, not positive. Return
-        None if there is no such function. ``active`` says for each guard of ``regime`` whether its zero ends the
-        regime; ``values`` are the parameters of the guards.
+        The sign of the guard's formula just after the present time is then at most ``most``, which is -1 or 0. Return
+        None if there is no such function. ``active`` says for each guard of the smooth motion ``regime`` whether its
+        zero ends this motion; ``values`` are the parameters of the guards.
         """
         # Functions that switch at one time do so one after the other; the rates may have no value until the last one
         # has, such as a root of a negative argument.
@@ -108,9 +111,9 @@ class ModeChanges(Guards):
         )
 
     def _no_longer_held(self) -> None:
-        """Release a held function sign(x) if x does not stay at zero any more, because another function has switched.
+        """Stop holding x at zero in a function sign(x) if the switch of another function makes x leave zero.
 
-        Raise IntegrationStopped if no function is released: the continuation of the motion is then not unique.
+        Raise IntegrationStopped if there is no such function: the continuation of the motion is then not unique.
         """
         released = self._released_by_another(solvable=False)
         if released is None:
@@ -118,12 +121,13 @@ class ModeChanges(Guards):
         self._change(*released)
 
     def _change(self, mode: str, change: int) -> None:
-        """Change the value of the function (sign, floor, ..) with the mode ``mode`` at the present time.
+        """Change the value of the function (sign, floor, ..) that ``mode`` stands for, at the present time.
 
-        A held sign is released and gets the value ``change``, 1 or -1. Another sign changes to its opposite, or its
-        argument is held at zero if the rates on both sides drive it back there. A floor changes by ``change``, or to
-        its new value if its argument has jumped. Raise IntegrationStopped if the switches contradict each other, or if
-        the motion would slide along a floor or backward in time.
+        A sign whose argument was held at zero gets the value ``change``, 1 or -1, and its argument is free again.
+        Another sign changes to its opposite, or its argument is held at zero if the rates on both sides drive the
+        argument back to zero. A floor changes by ``change``, or to its new value if its argument has jumped. Raise
+        IntegrationStopped if the switches contradict each other, if the argument of a floor would have to stay at a
+        jump, or if an argument would have to stay at zero backward in time.
         """
         kind = self.by_name[mode].kind
         self.left.add((mode, self.modes[mode]))
@@ -202,9 +206,9 @@ class ModeChanges(Guards):
     def _returns(self, mode: str) -> bool:
         """Return whether a function such as sign(x) must be held at x = 0, because its switch would lead to a cycle.
 
-        After the switch, all functions would have the same values as once before at the present time, so that the
-        switches would repeat without end. A function with only a kink, such as abs, is not held if a function with a
-        jump has switched in this cycle.
+        Several functions may switch one after the other at the present time. If this switch would return all of them to
+        values that they have had before at this time, the switches would repeat without end. A function with only a
+        kink, such as abs, is not held if a function with a jump is among the switches that would repeat.
         """
         first = self.visited.get(self._state(flip=mode))
         if first is None:
@@ -223,10 +227,10 @@ class ModeChanges(Guards):
         return frozenset((mode, value) for mode, value in modes.items() if mode not in held), held
 
     def _jumped(self, mode: str) -> bool:
-        """Return whether a function inside the argument of the function with the mode ``mode`` has switched after it.
+        """Return whether the argument of a function has jumped since the function last switched at the present time.
 
-        For the mode of abs in abs(x + sign(y)): whether sign(y) has switched after abs, both at the present time. The
-        argument of abs has then jumped, and abs may switch again.
+        ``mode`` stands for the function, which must have switched. The argument jumps if a function inside it switches:
+        if sign(y) has switched after abs in abs(x + sign(y)), abs may switch again.
         """
         last = len(self.order) - self.order[::-1].index(mode)
         return bool(self._names_inside(mode) & set(self.order[last:]))
@@ -236,8 +240,8 @@ class ModeChanges(Guards):
     ) -> bool:  # fmt: skip
         """Return whether a guard is negative at the start of ``piece``, a part of the motion, only by rounding.
 
-        A guard is a formula that turns negative where a function (sign, floor, ..) switches; its function has just
-        switched.
+        A guard is a formula that turns negative where a function (sign, floor, ..) switches. Return False if this
+        function has not switched at the present time, or if its argument is held at zero.
         """
         # the guard is zero there, because its function has just switched
         if guard.mode in self.held or not self.flipped.get(guard.mode):
@@ -256,7 +260,10 @@ class ModeChanges(Guards):
         return {s.mode for s in self.system.switches if s.where and not hold(s.where, self.modes, self.held)}
 
     def _wake(self, mode: str) -> None:
-        """Set the value of the function with the mode ``mode``, such as sign(x), to its present value."""
+        """Compute the present value of a function such as sign(x) from x, and store the value.
+
+        ``mode`` stands for the function. The stored value stays as it is if x has no value, or for a sign if x is zero.
+        """
         # the motion begins to use the branch of where(..) with this function, whose changes were not followed before
         try:
             guard = self._guard_value(mode)
@@ -285,9 +292,9 @@ class ModeChanges(Guards):
         self._regime(self.modes)
 
     def _comes_to_rest(self, regime: Regime) -> bool:
-        """Give each held sign(x) the value sign(0) if x stays zero even if it is not held.
+        """Give sign(x) the value sign(0) if x is held at zero but would stay zero with this value, too.
 
-        Return whether there was such a function.
+        Only functions whose value at zero affects the motion are examined. Return whether there was such a function.
         """
         # Held: the equations contain the value of sign(x) between -1 and 1 for which x remains zero. If x remains zero
         # with sign(0) too, as for a body at rest that no torque drives, sign(0) replaces it.
@@ -311,8 +318,8 @@ class ModeChanges(Guards):
     def _leaves_zero(self, regime: Regime, active: list[bool], piece: Piece) -> bool:
         """Give each sign(x) with the value 0 the sign of x at the end of ``piece``; return whether a value changed.
 
-        ``piece`` is a part of the motion. ``active`` says for each guard of ``regime`` whether its zero ends the
-        regime; only those functions are examined.
+        ``piece`` is an interval of the motion. ``active`` says for each guard of the smooth motion ``regime`` whether
+        its zero ends this motion; only the functions of such guards are examined.
         """
         # only functions whose guard can end the regime (active)
         numbers = [
@@ -372,8 +379,8 @@ class ModeChanges(Guards):
     def _check_held_alone(self) -> None:
         """Raise IntegrationStopped if the motion slides along the jumps of two functions at once.
 
-        This is so if the argument of another function with a jump is zero wherever the argument of a held sign(x) is:
-        the equations determine the value of the held sign, not the value of the other function at its jump.
+        Where the argument of a sign is held at zero, the equations determine the value of the sign. If the argument of
+        another function with a jump is zero at the same states, its value at the jump is not determined.
         """
         # The equations determine one value between -1 and 1 for a held sign, not the two values in sign(omega_1) +
         # sign(omega_1 + omega_1^3), whose arguments are zero together.

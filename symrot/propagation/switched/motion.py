@@ -45,7 +45,7 @@ class SwitchedMotion(MotionInParts):
         self.system.regime(frozenset(), self.system.initial_modes())
 
     def follow(self, times: Floats, in_order: bool = False) -> tuple[Floats, Stats]:
-        """Return the N states at n times of the scene, s, shape (n, N), and the cost of the motion and its switches."""
+        """Return the N states at n times of the scene, s, shape (n, N), with the cost and the switching times."""
         began, states = perf_counter(), np.empty((len(times), len(self.plan.states)))
         cost, done = np.zeros(3, dtype=np.int64), np.empty(0, dtype=np.intp)
         changes, rounded = dict[tuple[float, str], str](), list[float]()

@@ -51,7 +51,8 @@ class Guard(NamedTuple):
 class RegimeParameters(NamedTuple):
     """Parameters of the equations between two switches, in which time is counted from an epoch.
 
-    The first three are functions of the epoch, which is a time of the scene, s (:class:`ShiftedParameters`).
+    The parameters ``rates``, ``guards`` and ``quantities`` are functions of the epoch, a time of the scene, s
+    (:class:`ShiftedParameters`); ``invariants`` are numbers.
     """
 
     rates: ShiftedParameters
@@ -156,10 +157,10 @@ class Regime:
         }
 
     def bound(self, modes: Modes, zero: Instant) -> tuple[list[float], list[float]]:
-        """Return two lists of values of parameters: for the stepper, and for the search for switches.
+        """Return the values of the equations' parameters: a list for the stepper, and one for the search for switches.
 
-        ``modes`` has the values of the functions (sign, abs, ..). The equations count time from the instant ``zero``,
-        on which the parameters depend.
+        ``modes`` has the present values of the functions (sign, abs, ..). The equations count time from the instant
+        ``zero``, on which the parameters may depend.
         """
         rates, guards, quantities, invariants = self._parameters_under(modes)
         fixed = rates.fixed and guards.fixed and quantities.fixed
@@ -172,9 +173,10 @@ class Regime:
         return self._bound[place]
 
     def zeros(self, modes: Modes, zero: Instant, y: Floats) -> set[str]:
-        """Return the names of the states and parameters in the formulas of the output quantities whose values are zero.
+        """Return the names of the states and parameters that are zero now, of those that the output quantities contain.
 
-        ``y`` are the states.
+        ``y`` are the present states, ``modes`` the present values of the functions (sign, abs, ..). The equations count
+        time from the instant ``zero``.
         """
         # with these names one decides whether x in sign(x) stays zero by itself, as in a body at rest
         return {name for name, value in self._inputs(modes, zero, y).items() if value == 0.0}
@@ -196,7 +198,8 @@ class Regime:
     def rates_since(self, modes: Modes, zero: Instant) -> Callable[[float], list[float]] | None:
         """Return a function that takes an epoch, s after ``zero``, and returns the parameters of the rates.
 
-        With these parameters the rates count time from the epoch. Return None if the rates do not depend on time.
+        With these parameters the rates count time from the epoch; ``modes`` has the values of the functions (sign, abs,
+        ..). Return None if these parameters do not depend on the epoch.
         """
         rates = self._parameters_under(modes).rates
         return None if rates.fixed else lambda since: rates.parameters(zero.exact + Fraction(since))

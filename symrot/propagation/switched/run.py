@@ -242,8 +242,8 @@ class SwitchedRun(ModeChanges):
     ) -> tuple[Piece, Callable[[Floats], Floats], Guard | None] | None:
         """Return a short linear motion (hop) past the time t at which a stepper is stuck; None if it is not accurate.
 
-        The result is its polynomial, a function from times to states, and the guard that is zero at its end; the last
-        is None for a hop away from the switch at t = 0.
+        The result is the polynomial of the hop, a function from times to states, and the guard that is zero at the end
+        of the hop. The guard is None if t is 0, the instant of the last switch, from which the hop leads away.
         """
         # Steps shrink to zero where a torque has no derivative, though its impulse is finite: sqrt(1 - t) before a
         # switch at 1 s, sqrt(t - 1) after it. If the impulse is less than the tolerance, the states may change

@@ -30,8 +30,8 @@ class RunState:
     y : array, shape (N,)
         The states at ``t``.
     spent : int
-        Number of SciPy's evaluations so far, plus a fixed number for each window (interval that SciPy integrates at
-        once), which stands for the other work on it.
+        Number of evaluations by SciPy so far, plus a fixed number for each interval that SciPy integrates at once: the
+        other work on an interval costs about as much as this number of evaluations.
     mark : (int, float)
         The values of ``spent`` and of the time covered, s, when it was last checked whether the motion advances so
         slowly that its end cannot be reached.
@@ -65,7 +65,7 @@ class RunState:
     def note_rounding(self, zero: Instant) -> None:
         """Store the first time from which rounding errors may matter, if any, in :attr:`rounded_beyond`.
 
-        The sum of the errors has this time in s after ``zero``; it is converted to a time of the scene.
+        This time is ``rounding.beyond``, in s after ``zero``; it is stored as a time of the scene.
         """
         if not self.rounded_beyond and self.rounding.beyond is not None:
             self.rounded_beyond.append(zero.after(self.rounding.beyond).high)

@@ -168,8 +168,9 @@ class SciPyPieces:
 
 
 def smooth_pieces(run: RunState, regime: Regime, rates: list[float]) -> SteppedPieces | SciPyPieces:
-    """Return the smooth motion ``regime`` from the present state of ``run``; its method ``pieces`` yields its pieces.
+    """Return the computation of the smooth motion ``regime`` from the present state of ``run``.
 
+    Its method ``pieces`` yields successive intervals of this motion, each with polynomials and a function to states.
     ``rates`` are the values of the parameters of the rates.
     """
     motion = regime.motion

@@ -39,7 +39,7 @@ class SwitchedSystem:
 
     @cached_property
     def switches(self) -> list[Switch]:
-        """The switching functions (sign, abs, ..) of all torques, each with its argument and the name of its value."""
+        """The switching functions (sign, abs, ..) of all torques, each with its argument and the name of its mode."""
         # the mode, a constant of the plan, is the number that replaces the function in the formulas
         return [switch for switches in self._switches_by_torque for switch in switches]
 
@@ -81,7 +81,10 @@ class SwitchedSystem:
         return {twin: (mode, sign) for mode in held for twin, sign in self.twins[mode] if twin != mode}
 
     def matters_at_zero(self, mode: str) -> bool:
-        """Return whether a motion in which the argument x of sign(x) stays zero needs sign(0)."""
+        """Return whether the value of sign(0) affects a motion in which the argument x of sign(x) stays zero.
+
+        ``mode`` is the name of the number that replaces the function sign(x) in formulas.
+        """
         if next(switch for switch in self.switches if switch.mode == mode).at_zero != 0:
             # functions with the value of one side at zero, such as abs and step, never need it
             return False
@@ -126,9 +129,9 @@ class SwitchedSystem:
         return self._modes_at_start({})
 
     def beside_start(self, mode: str, sign: int) -> Modes:
-        """Return the values of all functions (sign, abs, ..) just after the start, if ``mode`` is ``sign``.
+        """Return the values of all functions (sign, abs, ..) just after the start, for a given value of one of them.
 
-        A mode is the number that replaces a function in formulas.
+        ``mode`` is the name of the number that replaces this one function in formulas; ``sign``, 1 or -1, is its value.
         """
         # functions that contain this one, such as floor(sign(x) + y), differ for 1 and -1
         return self._modes_at_start({mode: sign})[0]
@@ -159,7 +162,8 @@ class SwitchedSystem:
     def regime(self, held: frozenset[str], modes: Modes) -> Regime:
         """Return the smooth motion in which the arguments of the switching functions ``held`` stay at zero.
 
-        Raise InputError if the argument of another function contains one of them: it then has no value.
+        Raise InputError if one of these functions, or one that switches together with it, occurs inside the argument of
+        another function: this argument then has no value.
         """
         # the values of the other functions only choose branches of where(condition, u, v)
         key = held, tuple(modes.values()) if self._chooses else ()
@@ -222,7 +226,7 @@ def _switches(torque: FormulaTorque) -> list[Switch]:
 
 
 def _is_mixed(torque: FormulaTorque, mode: str) -> bool:
-    """Return whether a formula of the torque is nonlinear in ``mode``, a number that stands for sign, abs, .."""
+    """Return whether a formula of the torque is nonlinear in the number named ``mode``, which replaces sign, abs, .."""
     # the mean of the formula's values at 1 and -1 is then not its value at 0
     own = mode.removeprefix(torque.prefix)
     nodes = [parse(formula, switching=True) for formula in torque.choices or torque.formulas]
@@ -235,7 +239,10 @@ def is_continuous(switch: Switch) -> bool:
 
 
 def _bends(switch: Switch | TorqueSwitch) -> bool:
-    """Return whether a function, not floor, only has a kink where it switches, as abs has, and no jump, as sign has."""
+    """Return whether a function has only a kink where it switches, as abs, and no jump, as sign.
+
+    The result is not valid for floor.
+    """
     # at the switch, both values of its mode, 1 and -1, then give the right result; floor would give True here
     return switch.at_zero == 1
 
@@ -245,9 +252,10 @@ def _chosen(
 ) -> TorqueStructure:
     """Return a torque in which the branch that applies replaces each ``where(condition, u, v)``.
 
-    ``modes`` has the values of the switching functions (sign, abs, ..). The functions ``held`` become unknowns of the
-    equations; functions with jumps in ``tied`` become the same unknowns or their negatives
-    (:meth:`SwitchedSystem.tied`). A torque without formulas is returned unchanged.
+    ``modes`` has the values of the switching functions (sign, abs, ..). The functions ``held``, whose arguments stay at
+    zero, become unknowns of the equations. ``tied`` maps the functions that switch together with a held one to pairs
+    (held function, 1 or -1): those with jumps become the unknown of the held function or its negative. A torque without
+    formulas is returned unchanged.
     """
     if not isinstance(torque, FormulaTorque):
         # no formulas

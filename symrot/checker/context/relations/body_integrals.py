@@ -89,7 +89,10 @@ MOMENT_OF_AXIS, MASS, GYRATION = (
 
 
 def substitutions_of_gyration(context: Context, sides: Sequence[Expr]) -> Iterator[Substitution]:
-    """Yield the Substitution of ``m k^2`` for I, for a claim ``I = m k^2`` in any letters: the definition of k."""
+    """Yield the Substitution of ``m k^2`` for the moment of inertia I, where k is the radius of gyration by definition.
+
+    Only for a claim with exactly three letters: a moment of inertia, a mass and a radius of gyration.
+    """
     names = {atom: plain(as_text(atom)) for atom in sorted(atoms_of(sides), key=str)}
     patterns = (MOMENT_OF_AXIS, MASS, GYRATION)
     if len(names) != len(patterns):

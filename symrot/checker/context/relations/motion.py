@@ -1,7 +1,7 @@
 """Verdicts on claims about rates of Euler angles, about tops, and about integrals over a body.
 
-For each subject symrot derives relations, such as the angular velocity from the angle rates. A claim is true if their
-formulas make it an identity.
+For each subject symrot derives formulas, such as those for the angular velocity in the angle rates. A claim holds if it
+becomes an identity when these formulas replace its letters.
 """
 
 from dataclasses import replace

@@ -56,7 +56,7 @@ class Substitution:
 
     @property
     def identification(self) -> Identification:
-        """The relation called ``name``, as an entry of ``recognised_as`` in a verdict."""
+        """The relation called ``name`` as an Identification, such as a verdict lists in ``recognised_as``."""
         return Identification(self.name, "", self.mapping, self.source)
 
 
@@ -114,11 +114,10 @@ def by_substitution(
 
 
 def _recognised(context: Context, verdict: Verdict, true: Sequence[Substitution], is_complete: bool) -> Verdict:
-    """Return "true" if a claim with a context is proven by a stated interpretation and ``is_complete``; else
-    "recognised".
+    """Return the verdict "true" or "recognised" on a claim that holds under the interpretations ``true``.
 
-    ``true`` are the interpretations under which the claim holds; a stated one has no guess. ``is_complete`` says that
-    all interpretations of the claim were tried.
+    It is "true" if the claim has a context, one of ``true`` guesses nothing that neither claim nor context states, and
+    all interpretations of the claim were tried (``is_complete``).
     """
     stated = [way for way in true if not way.guess]
     readings = tuple(way.identification for way in (stated or true)[:MOST_READINGS])

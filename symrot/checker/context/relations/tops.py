@@ -82,7 +82,7 @@ def _substitution(names: Mapping[Expr, str], values: dict[Expr, Expr], own: Sequ
 
 
 def _mapping(names: Mapping[Expr, str], values: Mapping[Expr, Expr]) -> dict[str, str]:
-    """Return a map from symbols of the relation to other letters that the claim has for them: A to I_1."""
+    """Return a map from symbols of a top, such as A, to the claim's letters for them, as I_1, where they differ."""
     return {str(value): names[atom] for atom, value in values.items()
             if isinstance(value, Symbol) and str(value) != names[atom]}  # fmt: skip
 
@@ -90,8 +90,9 @@ def _mapping(names: Mapping[Expr, str], values: Mapping[Expr, Expr]) -> dict[str
 def _is_fitting(names: Mapping[Expr, str], values: Mapping[Expr, Expr], own: Sequence[str], has_body: bool) -> bool:
     """Return whether ``values``, the meanings of a claim's letters, make it a claim about a top.
 
-    At least one letter must be a moment of inertia, no two letters may have the same meaning, and the context
-    (``has_body``), a letter such as p_theta, or one of the titles ``own`` of its quantities must imply a top.
+    At least one letter must mean a moment of inertia, and no two letters may have the same meaning. A body in the
+    context (``has_body``), a letter such as p_theta, or the titles ``own`` of quantities in the claim, such as
+    "momentum of spin", must show that the claim is about a top.
     """
     letters: dict[Expr, str] = {}
     same = all(letters.setdefault(value, names[atom]) == names[atom] for atom, value in values.items())
@@ -103,7 +104,11 @@ def _is_fitting(names: Mapping[Expr, str], values: Mapping[Expr, Expr], own: Seq
 
 
 def _choices(context: Context, name: str, formulas: Mapping[str, Expr], load: Expr) -> Iterator[tuple[str, Expr]]:
-    """Yield (title, formula) for each quantity of a top that a letter can mean: "spin along the axis" for s."""
+    """Yield pairs (title, formula) for each quantity of a top that the letter ``name`` can mean.
+
+    The title of s is "spin along the axis", that of a coordinate such as theta is empty. ``formulas`` maps titles to
+    formulas; ``load`` is the weight of the top, m*g or W.
+    """
     meaning = context.meaning_of(name)
     pattern = meaning.quantity.symbols if meaning is not None else ""
     for letters, symbol in COORDINATES:

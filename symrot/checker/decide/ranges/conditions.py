@@ -29,8 +29,9 @@ Sign = tuple[Expr, str]
 
 @dataclass
 class Range:
-    """The lower and the upper bound of a quantity, each a number or None, and whether the quantity may equal the
-    bound.
+    """The lower and the upper bound of a quantity, each a number or None.
+
+    ``low_closed`` and ``high_closed`` say whether the quantity may equal its lower and its upper bound.
     """
 
     low: Expr | None = None
@@ -89,8 +90,9 @@ class Conditions:
 
     @classmethod
     def of(cls, signs: Sequence[Sign], divided: bool = True) -> "Conditions":
-        """Return the conditions ``signs`` in their simplest form; with ``divided``, divisors in their formulas are
-        nonzero too.
+        """Return the conditions ``signs`` in their simplest form.
+
+        With ``divided``, the conditions that divisors in their formulas are nonzero are added: y != 0 for x/y >= 0.
         """
         conditions = cls()
         for formula, sign in signs:
@@ -243,10 +245,10 @@ class Conditions:
         return bool(own.sign_of(bound.root)[0])
 
     def _lies_between(self, bound: Bound, factors: Mapping[Expr, int], direction: int) -> bool:
-        """Return whether a condition such as ``(x - 1)*(x + 1) >= 0`` excludes the root of ``bound``, here x = 0.
+        """Return whether a condition on a product excludes the root of ``bound``: (x - 1)*(x + 1) >= 0 excludes x = 0.
 
-        That is so if the product has two factors in the same quantity, and the root lies between their roots, where the
-        condition fails. The condition is on ``direction``, 1 or -1, times the product of ``factors``.
+        The product must have two linear factors in the same quantity, here x, and the condition must fail between their
+        roots, where the root of ``bound`` is. It is on ``direction``, 1 or -1, times the product of ``factors``.
         """
         pair = [bound_of(factor) for factor in factors]
         if len(pair) != 2 or any(other.quantity != bound.quantity for other in pair):
@@ -255,7 +257,7 @@ class Conditions:
         return outside and bool(((bound.root - pair[0].root) * (bound.root - pair[1].root)).is_negative)
 
     def grants(self, quantity: Expr, own: Range) -> bool:
-        """Return whether other conditions than ``ranges`` imply that a cosine is in the range ``own``.
+        """Return whether the conditions ``nonzero`` and ``products`` imply that a cosine is in the range ``own``.
 
         Then this range need not be printed. For instance, cos(u) > -1 holds if cos(u/2) must not be zero. False if
         ``quantity`` is no cosine.

@@ -20,7 +20,10 @@ __all__ = ["Bound", "bound_of", "is_always_positive", "nonnegative_at_zero", "si
 
 @dataclass(frozen=True)
 class Bound:
-    """A linear factor of a formula in the form ``slope * (quantity - root)``, with the slope 1 or -1."""
+    """A factor of a formula, up to a positive constant: ``slope * (quantity - root)`` with the slope 1 or -1.
+
+    Its sign bounds the quantity by the root: ``4 - 2*x``, with slope -1, is positive for x < 2.
+    """
 
     quantity: Expr
     root: Expr
@@ -32,7 +35,7 @@ class Bound:
 
 
 def bound_of(factor: Expr) -> Bound:
-    """Return a factor as a quantity minus a number, without its scale: x minus pi/2 for ``2*x - pi``."""
+    """Return a factor as a quantity minus a number, up to a positive constant: x minus pi/2 for ``2*x - pi``."""
     constant, rest = factor.as_independent(*_leaves(factor), as_Add=True)
     content, quantity = rest.as_coeff_Mul()
     if quantity.is_Add:

@@ -16,8 +16,11 @@ SOLIDS, AXES = "derivations/standard_solids.md", "derivations/parallel_axis.md"
 
 
 def bodies() -> Iterator[Named]:
-    """Yield radii of gyration, the parallel- and perpendicular-axis theorems, and moments of inertia that books give
-    with a density, or for a box diagonal, a right triangle, a tilted rod and a pair of masses.
+    """Yield formulas for bodies in books: squared radii of gyration, the parallel- and perpendicular-axis theorems, and
+    moments of inertia.
+
+    The moments are for solid bodies of given density instead of mass, and for a box about its space diagonal, a right
+    triangle, a tilted rod and a pair of masses.
     """
     for name, shape in SHAPES.items():
         if shape.kind == "points":
@@ -53,7 +56,10 @@ def _right_triangle() -> Iterator[Named]:
 
 
 def _rods_and_masses() -> Iterator[Named]:
-    """Yield the moments of a tilted rod and of two masses about their centre of mass."""
+    """Yield moments of inertia: of a rod at an angle to an axis through its centre or end, and of two point masses.
+
+    The moment of the two masses is about an axis through their centre of mass, perpendicular to the line between them.
+    """
     rod = solid("rod")
     normal = Matrix([0, sin(symbols.theta), cos(symbols.theta)])
     for place, point in (("its centre", tuple(rod.center_of_mass)), ("an end", (0, 0, symbols.L / 2))):

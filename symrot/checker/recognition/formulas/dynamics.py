@@ -14,7 +14,8 @@ from symrot.inertia import tensor
 __all__ = ["SYMMETRIC_EULER", "rigid_bodies", "torques"]
 
 SYMMETRIC_EULER = "by Euler's equations of a symmetric body"
-"""Words in the names of formulas for a body whose moments about axes 1 and 2 are equal: both are the letter A."""
+"""Words in the name of a formula for a symmetric body: its moments of inertia about axes 1 and 2 are equal, and the
+formula has the letter A for both."""
 
 
 def rigid_bodies() -> Iterator[Named]:

@@ -1,7 +1,7 @@
 """Formulas of kinematics in books: rotated vectors, points of a body, angles from matrices and quaternions.
 
-An angle is stored by its sine, cosine or tangent, and its name ends with the inverse function: "angle of rotation of a
-unit quaternion, 2 acos" has the formula q0.
+The formula for an angle is the argument of an inverse function, with which its name ends: "angle of rotation of a unit
+quaternion, 2 acos" has the formula q0, because the angle is 2*acos(q0).
 """
 
 from collections.abc import Iterator, Sequence
@@ -35,10 +35,10 @@ UNIT, PARAMETERS, RELATIVE, COMPOSITION, RODRIGUES, MOMENTUM, ENERGY, POWER, WHE
 PITCH = "pitch angle of a rotation matrix, asin"
 SECOND_ANGLE_OF_MATRIX = "second angle of ZXZ, and of ZYZ, of a rotation matrix, acos"
 OF_ONE_ENTRY = (PITCH, SECOND_ANGLE_OF_MATRIX)
-"""Names of the angles that one entry of a rotation matrix gives, as R_33 the second angle of ZXZ.
+"""Names of the formulas for angles that follow from one entry of a rotation matrix, as acos(R_33), second angle of ZXZ.
 
-Such a formula is one symbol, so that every claim ``angle = acos(letter)`` would match. A claim means the angle only if
-the letter has the name of a matrix entry, such as R_33.
+The stored formula is this entry alone, so that every claim ``angle = acos(letter)`` would match. A claim is recognised
+only if the letter has the name of a matrix entry, such as R_33.
 """
 
 GYROSCOPE = "torque on a gyroscope whose axis precesses"
@@ -277,10 +277,10 @@ def _euler_angles() -> Iterator[Named]:
 
 
 def _root_of_squares(matrix: Matrix, places: Sequence[tuple[int, int]], square: Expr) -> Expr:
-    """Return the root of the sum of the squares of the rotation matrix entries at ``places``, in the symbols for
-    entries.
+    """Return the root of the sum of squares of some rotation matrix entries, as ``sqrt(R_11^2 + R_21^2)``.
 
-    Assert that in ``matrix``, where the entries are functions of Euler angles, the squares add up to ``square``.
+    ``places`` are their indices (row, column), from 0. ``matrix`` has the same entries as functions of Euler angles:
+    assert that the sum of their squares there equals ``square``.
     """
     total = sum(matrix[place] ** 2 for place in places)
     (outer,) = {factor for factor in symbols.angles if not square.has(factor) and total.has(factor)}

@@ -39,7 +39,8 @@ GENERAL = (
 )
 """Names of the formulas that are one symbol, or a vector of three symbols.
 
-Every letter equals such a formula; so a claim means it only with the letters that books use for it.
+Any claim whose formula is one letter or vector would match; so a claim is recognised only if it has the letters that
+books use.
 """
 
 

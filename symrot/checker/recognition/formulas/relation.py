@@ -18,7 +18,9 @@ class Relation(NamedTuple):
 
 
 def solved(relation: Relation) -> Iterator[tuple[str, str, Any]]:
-    """Solve a relation for each symbol in ``relation.words``; yield (name, derivation page, formula) for each symbol.
+    """Solve a relation for each symbol in ``relation.words``; yield (name, source, formula) for each symbol.
+
+    The source is the page with the derivation, such as ``derivations/heavy_top.md``.
 
     If the relation has only the square of a symbol, the formula is for the square, and its name ends with ", squared".
     Symbols in higher powers, or in first power and square, are skipped.

@@ -88,7 +88,7 @@ def verdict_by_edit(claim: Claim, named: NamedFormula) -> Verdict | None:
 
 @dataclass
 class _Remembering(Interpreter):
-    """An interpreter that reads each part of a formula once, also where edits of the formula share it."""
+    """An interpreter that stores the value of each tree node, since edits of a formula share most of its nodes."""
 
     known: dict[int, tuple[Node, Any]] = field(default_factory=dict)  # by id; the node is kept, so the id stays its own
 

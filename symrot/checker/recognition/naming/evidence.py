@@ -18,23 +18,26 @@ from symrot.checker.repair.edits.names import neighbours
 __all__ = ["LEAST_SYMBOLS_EDITED", "is_evident", "is_inverted", "is_of_body", "is_steady", "says_too_little"]
 
 LEAST_SYMBOLS_EDITED = 3
-"""The smallest number of quantities in a scalar formula that may be called a known formula with a wrong symbol."""
+"""The smallest number of quantities in a scalar formula that is compared with known formulas after an edit.
+
+With fewer quantities, an edited formula, such as one with another sign, may equal a known one by chance.
+"""
 
 MANY_LETTERS = 5
-"""A formula for a quantity of unknown name, one fault away from a known formula, is usually called faulty only if it
-has at least this many letters; a shorter one may be a right formula for something else.
+"""The smallest number of letters in a formula that is usually called faulty because one change makes it a known one, if
+the quantity's name has no usual meaning. A formula with fewer letters may be right for something else.
 """
 
 MANY_OCCURRENCES = 4
-"""A matrix that becomes a known matrix by one change is called faulty if at least this many letters occur in it; a
-letter counts as often as it occurs. A matrix with fewer letters may be a right formula for something else.
+"""The smallest number of letters, each counted as often as it occurs, in a claim's matrix that is called faulty because
+one change makes it a known matrix. A claim's matrix with fewer letters may be a right formula for something else.
 """
 
 SAFE_BY_UNIT = ("exponent", "factor", "wrong_symbol", "extra_term", "missing_term")
-"""Codes of the faults that count as evident if the claim's formula has another unit than the known formula near it."""
+"""Codes of faults that are usually reported if the claim's formula has another unit than the known formula."""
 
 SURE_IF_STATED = ("sin_cos_swap", "half_angle", "double_half_angle", "exponent")
-"""Codes of the faults that are evident if the context states what the letters of the formula mean."""
+"""Codes of faults that are usually reported if the context states what the letters of the formula mean."""
 
 
 def says_too_little(claim: Claim, named: NamedFormula, near: Near) -> bool:
@@ -145,7 +148,10 @@ def _is_multiple_of_period(named: NamedFormula, near: Near) -> bool:
 
 
 def _is_stated(claim: Claim, named: NamedFormula, near: Near) -> bool:
-    """Return whether the context of a claim states what its quantity is, and ``near`` is a formula for this meaning."""
+    """Return whether the user's context says what the claimed quantity is, and ``near`` is a formula for just this.
+
+    For a claim ``K = ..`` with K stated to be a kinetic energy, ``near`` must be a known formula for a kinetic energy.
+    """
     meaning = claim.context.meaning_of(quantity_name(named))
     return meaning is not None and any(phrase in near.known.name for phrase in meaning.quantity.formulas)
 
@@ -163,7 +169,10 @@ def _is_of_stated_body(claim: Claim, near: Near) -> bool:
 
 
 def _is_of_axis(named: NamedFormula, near: Near) -> bool:
-    """Return whether a quantity's name ends with an axis, as I_x does, and ``near`` is a formula for the same axis."""
+    """Return whether the claimed quantity's name ends with an axis, as I_x does, and the known formula has this axis.
+
+    The known formula is that of ``near``, with a name such as "moment of inertia of .., x axis".
+    """
     axis, own = re.search(r", ([xyz]) axis$", near.known.name), re.search("[xyz]+$", quantity_name(named))
     return axis is not None and own is not None and {*own[0]} == {axis[1]}
 
@@ -177,7 +186,7 @@ def _is_of_stated_flat_body(claim: Claim, near: Near) -> bool:
 def _is_component_of_quaternion(named: NamedFormula, near: Near) -> bool:
     """Return whether a claim gives a quaternion component with a wrong angle or function, as beta_1 = e_1 sin(phi).
 
-    ``near`` must be the known formula of this component, here e_1 sin(phi/2), and the fault one of angle or function.
+    ``near`` must be the known formula of this component, here e_1 sin(phi/2), and the fault a wrong angle or function.
     """
     place = re.fullmatch(r"(beta|eta|epsilon|q)_?([0-4])", named.name)
     word, _, rest = near.known.name.partition(" component of the quaternion of axis")
@@ -210,7 +219,7 @@ def _is_angle_of_entries(named: NamedFormula, near: Near) -> bool:
 def _is_component_of_parameters(named: NamedFormula, near: Near) -> bool:
     """Return whether a claim gives a component of Rodrigues parameters by a quaternion: sigma_1 by beta_0 and beta_1.
 
-    ``near`` must be a formula for the same component. The letters of the quaternion must have one stem, such as beta.
+    ``near`` must be a formula for the same component. The quaternion must be one letter with indices, such as beta_0.
     """
     place = re.fullmatch(r"[a-z]+_?([1-3])", named.name)
     word, _, rest = near.known.name.partition(" component of the ")

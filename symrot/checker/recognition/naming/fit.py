@@ -38,15 +38,20 @@ RATE_OF_ANGLE = re.compile(rf"diff\(({'|'.join(ANGLES)}|varphi|vartheta)\(t\), t
 """Pattern of the rate of an angle in a claim, ``diff(phi(t), t)``."""
 
 KNOWN_RATE = re.compile(r"d[a-z]+(_?\w+)?|(omega|Omega|w|n)(_?\w+)?")
-"""Pattern of the symbols of known formulas for which the rate of an angle may stand, such as dphi and omega_3."""
+"""Pattern of the symbols of known formulas, such as dphi and omega_3, in whose place a claim may have the rate of an
+angle."""
 
 RATES = {"precession": "dphi", "nutation": "dtheta", "spin": "dpsi"}
-"""Word for an Euler angle of a top, as in the name "momentum of precession" -> the symbol for the rate of the angle in
-known formulas."""
+"""Name of a top's rotation by an Euler angle -> the symbol for the rate of this angle in known formulas.
+
+The name occurs in names of formulas, such as "momentum of precession".
+"""
 
 RATES_OF_TOPS = ("precession", "nutation", "frequency")
-"""Words in the names of formulas for rates of a top. A claim about a component of an angular velocity, such as omega_2
-next to omega_1, does not mean these formulas."""
+"""Words in the names of known formulas for rates of a top.
+
+A claim about a component of an angular velocity, such as omega_2 given by omega_1, does not mean these formulas.
+"""
 
 OTHER_LENGTHS = (("R(_[12])?", r"[dD].*|[lLhH]|ell"), ("[abcLh]", r"[rR]"))
 """Pairs of patterns: symbols of known formulas, and letters that books never use for these symbols.
@@ -58,8 +63,10 @@ PARALLEL = re.compile("parallel.ax")
 """Pattern that occurs in the names of the formulas of the parallel-axis theorem."""
 
 OF_ROLL = re.compile(r"d?([pqr]|[Hh](_?\w+)?)")
-"""Pattern of the rates p, q, r of an aircraft and of letters of its angular momentum, such as H_x. Only beside one of
-these letters can L mean a torque, the rolling moment."""
+"""Pattern of the rates p, q, r of an aircraft and of letters of its angular momentum, such as H_x.
+
+A scalar claim ``L = ..`` may mean a known torque, the rolling moment, only if its formula has such a letter.
+"""
 
 RATES_OF_AIRCRAFT = {"p": "x1", "q": "y2", "r": "z3"}
 """Rate of an aircraft -> the two names of its axis in the body frame: p is about axis x, or 1."""
@@ -112,8 +119,9 @@ def fits_quantity(named: NamedFormula, known: Identification, matrix: bool) -> b
 
 
 def _is_of_other_angles(named: NamedFormula, known: Identification) -> bool:
-    """Return whether a formula for an aircraft's rate p, q or r has other Euler angles than roll, pitch and yaw, or is
-    for the space frame.
+    """Return whether a claim is about an aircraft's rate p, q or r, and the known formula contradicts this meaning.
+
+    It does if it gives the angular velocity in the space frame, or by other Euler angles than roll, pitch and yaw.
     """
     sequence = re.search(r"angular velocity of (\w{3}) ", known.name)
     if named.name not in RATES_OF_AIRCRAFT or sequence is None:
@@ -200,9 +208,9 @@ def _is_reversed(name: str, known: Identification) -> bool:
 
 
 def _is_component_of_rate(named: NamedFormula) -> bool:
-    """Return whether a claim is about one component of an angular velocity, such as omega_2.
+    """Return whether a claim gives one component of an angular velocity by others, as omega_2 by omega_1.
 
-    Its formula must have another component: omega_2 alone, without omega_1 or omega_3, may mean something else.
+    Without another component in the formula, omega_2 may mean something else, and the result is False.
     """
     stem = re.fullmatch(r"(omega|w|Omega)_?[1-3xyzif]", named.name)
     return stem is not None and any(
@@ -211,9 +219,9 @@ def _is_component_of_rate(named: NamedFormula) -> bool:
 
 
 def fits_context(context: Context, named: NamedFormula, known: Identification, letters: set[str]) -> bool:
-    """Return whether the known formula ``known`` agrees with the context of the claim ``named``.
+    """Return whether the known formula ``known`` agrees with what the user states besides the claim (``context``).
 
-    The context may say what the quantity of the claim and its ``letters`` mean. True without a context.
+    The context may say what the claimed quantity and the ``letters`` of the formula mean. True without a context.
     """
     if not context:
         return True

@@ -50,25 +50,32 @@ MOST_SOLVED = 4
 """The largest number of letters for which an equation is solved, each time to compare it with known relations."""
 
 PER_NAME = 0.1
-"""What each symbol with another letter in the claim adds to the cost of a known formula that differs from the claim by
-one fault. The formula with the least cost is the likeliest one that the claim means."""
+"""Added to the cost of a known formula for each of its symbols that has another letter in the claim.
+
+The cost ranks the known formulas that differ from the claim by one fault: the claim probably means the cheapest one.
+"""
 
 PER_PLACE = 0.3
-"""What each contradiction between the names of a known formula and of the claim's quantity adds to the formula's cost:
-"first component" contradicts omega_3."""
+"""Added to the cost of a known formula for each contradiction between its name and the name of the claimed quantity.
+
+For instance, "first component of .." contradicts omega_3. `PER_NAME` describes the cost.
+"""
 
 AS_NEAR = 0.15
-"""The largest difference of costs at which a claim counts as a moment of inertia about a parallel axis, not as faulty.
+"""The largest difference in cost at which a claim counts as a moment of inertia about a parallel axis, not as faulty.
 
-Such a claim equals a known moment plus m d^2. Compared with this moment, its supposed fault may cost at most this much
-more than its fault compared with the likeliest known moment.
+Such a claim equals a known moment plus m d^2, which looks like a fault. The cost of changing the claim to this moment
+may exceed the cost of changing it to the likeliest known moment by this number.
 """
 
 MOST_REPAIRS = 3
-"""The largest number of repairs in a verdict."""
+"""The largest number of corrected formulas (repairs) that a verdict offers."""
 
 MOST_PROOFS = 12
-"""The largest number of known formulas near a claim for which a proof is tried."""
+"""The largest number of changes of a claim's formula that are tested exactly.
+
+Each change gives a formula that has the values of a known one at a few points; a proof must show that both are equal.
+"""
 
 UPRIGHT = "for an angle from the upright position, the equation is right as it stands"
 
@@ -104,7 +111,7 @@ def _near_inside(claim: Claim, named: NamedFormula) -> Verdict | None:
 
 
 def _near_by_quantity(claim: Claim, named: NamedFormula) -> Verdict | None:
-    """Return the verdict "doubtful" if a change on the side of the quantity makes the claim a formula known to symrot.
+    """Return the verdict "doubtful" if a change of the quantity, not of its formula, makes the claim a known formula.
 
     For instance, k becomes k^2 in ``k = I/m``. Otherwise return None.
     """
@@ -131,10 +138,10 @@ def verdict_near_relation(claim: Claim) -> Verdict | None:
 
 
 def _near_relation(claim: Claim, left: Node, right: Node) -> Verdict | None:
-    """Return the verdict "doubtful" if one change makes ``left == right``, solved for a letter, a known formula.
+    """Return the verdict "doubtful" if ``left == right``, solved for a letter, becomes a known formula by one change.
 
-    Return "recognised" if the solved equation is a known formula when its letters have certain signs, such as a > 0,
-    and None in other cases.
+    Return "recognised" if the solved equation, unchanged, is a known formula for certain signs of letters, such as
+    a > 0, and None in other cases.
     """
     if len(names_in(left) | names_in(right)) < least_symbols_related(left, right):
         return None
@@ -152,8 +159,8 @@ def _near_relation(claim: Claim, left: Node, right: Node) -> Verdict | None:
 def _in_claim(repair: Repair, left: Node, right: Node, named: NamedFormula) -> Repair:
     """Return ``repair``, which corrects the solved equation ``named``, as a repair of the equation ``left == right``.
 
-    The two equations are the same, solved for a letter and not. A repair that changes several terms is returned as it
-    is.
+    For instance, a repair of ``T == I*alpha - M`` is turned into one of ``T + M == I*alpha``. A repair that changes
+    several terms is returned as it is.
     """
     sides = put_back(left, right, named, read_relation(repair.text)[2])
     return repair if sides is None else replace(repair, text=f"{text(sides[0])} == {text(sides[1])}")

@@ -30,13 +30,14 @@ FUNCTION_OF = {"acos": "cos", "asin": "sin"}
 """Inverse function -> the function."""
 
 AXES = ("123", "xyz")
-"""The indices of the components of a vector."""
+"""The indices of the three components of a vector, as numbers or as letters."""
 
 
 class QuantityVariant(NamedTuple):
-    """Both sides of a claim in which a fault is corrected on the side of its quantity: ``k^2 = I/m`` for ``k = I/m``.
+    """A corrected claim, whose left side (the quantity) was faulty: ``k^2 = I/m`` in place of ``k = I/m``.
 
-    ``code`` names the fault; ``cost`` is larger for rarer faults.
+    ``side`` is the corrected k^2, ``formula`` the other side. ``code`` names the fault; rarer faults have a larger
+    ``cost``.
     """
 
     side: Node
@@ -46,9 +47,9 @@ class QuantityVariant(NamedTuple):
 
 
 def quantity_variants(named: NamedFormula) -> Iterator[QuantityVariant]:
-    """Yield a claim with a usual fault corrected on the side of its quantity: ``k^2 = I/m`` for ``k = I/m``.
+    """Yield corrected claims in which a usual fault of the quantity is undone: ``k^2 = I/m`` for ``k = I/m``.
 
-    If the other side is a sum of names, ``k = a + b``, also yield ``k^2 = a^2 + b^2``.
+    If the formula for the quantity is a sum of names, ``k = a + b``, also yield ``k^2 = a^2 + b^2``.
     """
     side, formula = named.side, named.formula
     if side.kind == "call" and side.value in OPPOSITE and is_name_or_rate(side.args[0]):
@@ -71,7 +72,7 @@ def quantity_variants(named: NamedFormula) -> Iterator[QuantityVariant]:
 def without_inverse(named: NamedFormula) -> NamedFormula | None:
     """Return the claim ``cos(theta/2) = u`` for ``theta = 2*acos(u)``; None for a formula of another form.
 
-    The ``solve`` of the returned claim puts a formula in place of u in ``2*acos(u)``.
+    The function ``solve`` of the returned claim turns a formula u into ``2*acos(u)``, the formula for theta.
     """
     # acos(u) has no value at most random values of u
     factors = named.formula.args if named.formula.kind == "product" else (named.formula,)
@@ -125,7 +126,7 @@ def by_lengths(named: NamedFormula, judge: Callable[[NamedFormula], Verdict]) ->
 
 
 def _note(square: Node, whole: Node) -> str:
-    """Return the note for the user on a square that stands for the sum of squares ``whole``."""
+    """Return the note for the user that ``square``, sigma^2, is read as ``whole``, sigma_1^2 + sigma_2^2 + ..."""
     names = [str(term.args[0].value) for term in whole.args]
     return f"{square.args[0].value}^2 is read as the sum of the squares of {', '.join(names[:-1])} and {names[-1]}"
 

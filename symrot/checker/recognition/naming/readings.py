@@ -27,20 +27,22 @@ __all__ = [
 ]  # fmt: skip
 
 LEAST_SYMBOLS = 2
-"""The smallest number of symbols in a scalar formula that is looked up as it is written."""
+"""The smallest number of symbols in an unedited scalar formula that is looked up among the known formulas.
+
+One symbol suffices if the quantity's name has a usual meaning, such as I_zz.
+"""
 
 LEAST_SYMBOLS_RELATED = 5
-"""The smallest number of symbols in an equation that is compared with known relations; a shorter one may be another
-formula.
+"""The smallest number of symbols in an equation that is compared with known relations (equations between quantities).
 
-LEAST_SYMBOLS are enough if the context says what all letters mean, or for an unedited claim whose quantity has a name
-without usual meaning.
+An equation with fewer symbols may equal one by chance. The limit is LEAST_SYMBOLS if the context says what all letters
+mean, or for an unedited claim whose quantity has a name without usual meaning.
 """
 
 LEAST_SYMBOLS_OF_MOTION = 3
-"""The smallest number of symbols in an equation of motion that is compared with known relations.
+"""As LEAST_SYMBOLS_RELATED, for an equation of motion such as ``L*theta'' = -g*sin(theta)``.
 
-An equation of motion has the second time derivative of an angle, and the sine or cosine of the same angle.
+An equation counts as one if it has the second time derivative of an angle, and a sine or cosine of the same angle.
 """
 
 MOST_TERMS = 5000
@@ -50,11 +52,12 @@ MOST_READINGS = 4
 """The largest number of known formulas or relations that `readings_of_formula` and `readings_of_relation` return."""
 
 SQUARED = ", squared"
-"""The end of the name of a known formula that gives the square of the named quantity."""
+"""Ending of a known formula's name: "radius of gyration .., squared" is the name of a formula for k^2."""
 
 SIGNED = ("angular velocity", "scalar component")
-"""Beginnings of the names of such formulas for a quantity that may be negative: for others, a claim ``k = -sqrt(..)``
-has a wrong sign.
+"""Beginnings of the names of quantities that may be negative.
+
+For other quantities, such as a radius of gyration, a claim ``k = -sqrt(..)`` has a wrong sign.
 """
 
 
@@ -76,8 +79,9 @@ def readings_of_claim(
 
     The likeliest come first, MOST_READINGS at most.
 
-    A scalar formula with fewer than ``least_symbols`` symbols is compared with no known formula. For known relations,
-    and for names with a usual meaning, other limits hold. ``interpreter`` is by default that of the claim.
+    A scalar formula with fewer than ``least_symbols`` symbols is compared with no known formula; `readings_of_formula`
+    has an exception. Relations have the limit `least_symbols_related`, or LEAST_SYMBOLS. ``interpreter`` turns trees
+    into SymPy values; by default, the claim makes it.
     """
     interpreter = claim.interpreter() if interpreter is None else interpreter
     solved: tuple[Identification, ...] = ()
@@ -131,8 +135,9 @@ def readings_of_formula(
 ) -> tuple[Identification, ...]:
     """Return the likeliest known formulas for the claim's quantity that are equal to ``formula``.
 
-    Empty if ``formula`` cannot be read, or is a scalar with fewer than ``least_symbols`` symbols. If this limit is
-    LEAST_SYMBOLS, one symbol suffices for a quantity whose name has a usual meaning, such as I_zz.
+    Empty if ``formula`` cannot be read, or is a scalar with fewer than ``least_symbols`` symbols. In one case a single
+    symbol suffices: ``least_symbols`` is LEAST_SYMBOLS (for unedited formulas), and the quantity's name has a usual
+    meaning, such as I_zz.
     """
     try:
         value = claim.with_definitions((interpreter or claim.interpreter()).read(formula))
@@ -170,11 +175,12 @@ def readings_of_formula(
 
 
 def _without_function(value: Any, of_tangent: bool = False) -> tuple[Any, str]:
-    """Return (u, ending) for ``acos(u)`` or ``sqrt(u)``: u is looked up among formulas whose names end with ``ending``.
+    """Return a formula without its outer inverse function or root, and a word for this function: (u, ", acos").
 
-    ``2*acos(u)`` gives (u, ", 2 acos"), likewise asin and atan2; ``a*sqrt(u)`` gives (a**2*u, ", squared") and
-    ``a/sqrt(u)`` gives (a**2/u, ", squared"). Any other ``value`` gives (value, ""). With ``of_tangent``, for a claim
-    ``tan(x) = a/b``, ``atan(a/b)`` gives (Matrix([a, b]), ", atan2").
+    The known formulas are stored in the same way: one for an angle acos(u) is stored as u, with ", acos" at the end of
+    its name. ``2*acos(u)`` gives (u, ", 2 acos"), likewise asin and atan2; ``a*sqrt(u)`` gives (a**2*u, ", squared")
+    and ``a/sqrt(u)`` gives (a**2/u, ", squared"). Any other ``value`` gives (value, ""). With ``of_tangent``, for a
+    claim ``tan(x) = a/b``, ``atan(a/b)`` gives (Matrix([a, b]), ", atan2").
     """
     if is_matrix(value):
         return value, ""

@@ -56,7 +56,8 @@ ENDS = {acos: (S.Zero, pi), asin: (-pi / 2, pi / 2), atan2: (-pi, pi)}
 def verdict_on_name(claim: Claim, named: NamedFormula, repair: bool) -> Verdict:
     """Return the verdict on a claim that only gives a formula for a named quantity.
 
-    Without ``repair``, the verdict is never "doubtful".
+    With ``repair``, also look for a fault whose correction makes the formula a known one; the verdict then is
+    "doubtful", as it never is without ``repair``.
 
     Raises
     ------
@@ -148,9 +149,10 @@ def _by_matrix(claim: Claim, named: NamedFormula, repair: bool) -> Verdict | Non
 
 
 def _by_inverse(claim: Claim, named: NamedFormula, repair: bool) -> Verdict | None:
-    """Return the verdict on ``w' = J^-1*(M - ..)``, for a J that the claim defines: the verdict on ``J*w' = M - ..``.
+    """Return the verdict on a claim ``w' = J^-1*(M - ..)``, found by checking ``J*w' = M - ..`` in its place.
 
-    Return None for claims of another form, and if symrot knows no formula like ``J*w' = M - ..``.
+    The claim must define J. Return None for claims of another form, and if symrot knows no formula like
+    ``J*w' = M - ..``. Repairs are written in the form of the given claim where this is possible.
     """
     if named.formula.kind != "product" or len(named.formula.args) != 2:
         return None
@@ -191,9 +193,10 @@ def verdict_on_relation(claim: Claim) -> Verdict | None:
 
 
 def _slowing_down(claim: Claim, named: NamedFormula) -> tuple[Identification, ...]:
-    """Return the known formulas for constant angular acceleration that a claim gives with its alpha as a deceleration.
+    """Return the known formulas for constant angular acceleration that equal a claim's formula with -alpha for alpha.
 
-    Other letters of ``DECELERATION`` count too.
+    The claim then calls a deceleration alpha: ``omega = omega_0 - alpha*t``. Other letters of ``DECELERATION`` count
+    too. Return () if no formula is equal.
     """
     letters = sorted(name for name in names_in(named.formula) if re.fullmatch(DECELERATION, name))
     for letter in letters:

@@ -26,9 +26,10 @@ USUAL = {"c_3": "l", "mu": "m", "omega_3": "omega", "domega_3": "alpha"}
 
 
 def _absent_of_product(known: str, renaming: dict[str, str | None]) -> str | None:
-    """Return the claim's name for a component ``known`` of q or p in a quaternion product, which the claim lacks.
+    """Return the name that a claim would have for a component ``known`` of q or p in a quaternion product q*p.
 
-    With a1, b1, c1, d1 for q and a2, b2, d2 for p, p2 is c2. Return None if the claim's names do not show it.
+    The claim lacks the component. If it writes a1, b1, c1, d1 for q and a2, b2, d2 for p, the missing component p2 (the
+    third, after p0 and p1) is c2. Return None for other symbols, and if the claim's names are of another form.
     """
     if re.fullmatch("[qp][0-3]", known) is None:
         return None
@@ -47,9 +48,10 @@ def _without_mark(name: str) -> tuple[str, str]:
 
 
 def _numbered_angle(known: str, mine: str, other: str) -> str:
-    """Return the name for the angle ``known`` if ``mine`` is called ``other``: theta_3 for psi if phi is theta_1.
+    """Return a claim's name for the Euler angle ``known``, as the claim calls another Euler angle, ``mine``, ``other``.
 
-    An ``other`` without such a number gives "".
+    For ``known`` = psi, a claim that calls phi (``mine``) theta_1 (``other``) calls psi theta_3. Return "" if ``other``
+    does not end with the number of the angle ``mine``, counted from the first or from the last angle.
 
     Examples
     --------
@@ -70,9 +72,9 @@ def absent_name(known: str, renaming: dict[str, str | None], unused: Collection[
     """Return (name, is_implied): the name that a claim would have for a symbol ``known`` which the claim lacks.
 
     The symbol belongs to a known formula with which the claim is compared; ``renaming`` maps symbols of that formula to
-    the claim's names, or to None. The name is implied if other names of the claim show it: w_1 and w_2 imply w_3.
-    Letters of the claim that stand for no symbol of the known formula (``unused``) may show it too: I_1 implies I_3 for
-    the moment of inertia C.
+    the claim's names, or to None. The name is implied if other names of the claim show how the claim writes such
+    symbols: w_1 and w_2 imply w_3. These may also be ``unused`` letters, which stand for no symbol of the known
+    formula: I_1 implies I_3 for the moment of inertia C. Otherwise the name is that in ``USUAL``, or ``known``.
     """
     for mine, other in renaming.items():
         if other is not None and (numbered := _numbered_angle(known, mine, plain_name(other))):
@@ -104,10 +106,10 @@ def absent_name(known: str, renaming: dict[str, str | None], unused: Collection[
 
 
 def _absent_entry(known: str, renaming: dict[str, str | None]) -> str | None:
-    """Return the claim's name for the entry ``known`` of a rotation matrix: r_21 for R_21 if R_11 is r_11.
+    """Return the name that a claim would have for the entry ``known`` of a rotation matrix: r_21 for R_21.
 
-    Return None if ``known`` is no entry, and if the claim has no entry of the matrix, or one with other indices than in
-    the known formula.
+    The claim must call another entry, R_11, by a name with the same indices, r_11. Return None if ``known`` is no
+    entry, if the claim has no entries of the matrix, or if the indices differ, as for r_12 in place of R_21.
     """
     pairs = [(mine, other) for mine, other in renaming.items() if other is not None and MATRIX_ENTRY.fullmatch(mine)]
     if MATRIX_ENTRY.fullmatch(known) is None or not pairs or any(mine[-2:] != other[-2:] for mine, other in pairs):

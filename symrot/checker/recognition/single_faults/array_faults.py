@@ -23,17 +23,20 @@ from symrot.checker.repair.rows import entries_of, is_matrix, shape_of
 __all__ = ["ArrayFault", "agree", "array_faults", "has_arrays", "matching"]
 
 MOST_TERMS = 6
-"""The largest number of terms in a sum to which brackets are added."""
+"""The largest number of terms in a sum for which missing parentheses are tried, ``(a - b)*c`` for ``a - b*c``."""
 MOST_EDITS = 700
 """The largest number of edits of one formula that are evaluated."""
 CLOSE = 1e-8
-"""The largest relative difference between numbers that count as equal: entries of two matrices, or the sums of all
-entries of two matrices, by which edited formulas are looked up."""
+"""The largest relative difference between numbers that count as equal.
+
+The numbers are entries of two matrices, or the sum of all entries of each matrix; `matching` compares these sums first.
+"""
 OPERATIONS = ("skew", "cross", "dot", "qmul", "conjugate", "trace")
 """Names of the functions that take vectors, matrices or quaternions."""
 LEFT_OUT = ("extra_term", "overall_sign")
-"""Codes of edits that are not tried: a formula with one term less, or a vector in the other direction, is more likely
-another right formula than a faulty one.
+"""Codes of the faults that are not looked for: a superfluous term, and the wrong sign of a whole formula.
+
+A claim with one more term, or with the opposite vector, is more likely right for something else than faulty.
 """
 
 
@@ -57,7 +60,8 @@ def has_arrays(formula: Node, numeric: NumericFilter) -> bool:
 def array_faults(formula: Node, numeric: NumericFilter, letters: Letters) -> list[ArrayFault]:
     """Return at most MOST_EDITS edits that may undo a fault of a formula, each with the edited formula's values.
 
-    They are sorted by ``total``. For a scalar formula, they only add brackets or exchange two moments of inertia.
+    The edits are sorted by the sum of the entries at the first test point, so that `matching` finds them by this sum.
+    Edits of a scalar formula only add parentheses or exchange two moments of inertia.
     """
     # other faults of scalar formulas are sought part by part, in the module `parts`
     if has_arrays(formula, numeric):
@@ -107,7 +111,7 @@ def _edits(formula: Node, numeric: NumericFilter, letters: Letters) -> Iterator[
 
 
 def _brackets(formula: Node) -> Iterator[Edit]:
-    """Yield edits that put brackets into a sum: ``(a - b)*c`` for ``a - b*c``."""
+    """Yield edits that put parentheses into a sum: ``(a - b)*c`` for ``a - b*c``."""
     for path, node in walk(formula):
         if node.kind == "sum" and len(node.args) <= MOST_TERMS:
             for made in bracketed(node.args):

@@ -69,7 +69,10 @@ class Search(NamedTuple):
     comparisons: dict[Any, tuple[list["Near"] | None, int]]  # results of `compare` so far, with their operations
 
     def matching(self, part: Part) -> Iterator[Variant]:
-        """Yield the changes that give a part the values ``part.needed``, with which the whole formula is right."""
+        """Yield the changes of a part of the claim's formula after which this part has the values ``part.needed``.
+
+        If the part has these values, the whole formula has the values of the known formula.
+        """
         values, made = self.variants[part.path]
         first = part.needed[0]
         if is_matrix(first) or not values:
@@ -81,9 +84,9 @@ class Search(NamedTuple):
 
 
 CLOSE = 1e-8
-"""A change of a part of the formula is tested at all points if its value at the first point is close to the needed one.
+"""The largest relative difference between two values of a part at the first test point for a test at all points.
 
-The needed value makes the whole formula right. CLOSE is the largest relative difference from the needed value.
+The values are the one after a change of the part, and the one with which the whole formula is right.
 """
 
 
@@ -202,7 +205,10 @@ def _lacking_letter(absent: str, name: str, letters: Letters) -> Node:
 
 
 def _is_promising(search: Search, needed: Values) -> bool:
-    """Return whether a change of one part gives the whole formula the values ``needed`` at the first two points."""
+    """Return whether there is a part of the claim's formula whose change alone gives the formula the values ``needed``.
+
+    Only the first two test points are used. `_changes` describes the changes.
+    """
     # quicker than the full comparison, which follows
     return any(
         is_superfluous(part) or is_multiple(part) or any(search.matching(part))

@@ -1,4 +1,7 @@
-"""Values of known formulas at test points, and values with which a claim's formula agrees with a known formula."""
+"""Values of known formulas at test points, and the values that a claim's formula must have to agree with them.
+
+A claim ``2*T = ..`` agrees with a known formula for T if its right side has twice the values of this formula.
+"""
 
 import math
 import re
@@ -148,7 +151,8 @@ class KnownValues:
 def views(known: Known, values: Values) -> Iterator[Values]:
     """Yield ``values``, and ``values`` transposed, doubled, or with a quaternion's scalar last, where this makes sense.
 
-    Only the values of square matrices are transposed, and only those of ``scaled`` formulas doubled.
+    Only the values of square matrices are transposed. Only the values of a formula of which any multiple has the same
+    name (``known.scaled``), such as a quaternion rate, are doubled.
     """
     yield values
     if not is_matrix(values[0]):
@@ -176,8 +180,8 @@ def needed_values(named: NamedFormula, known: Known, target: Values, letters: Le
     """Return the values that the claim's formula should have if ``target`` are the values of the known formula.
 
     For the claim ``2*T = ..`` and a known formula for T, these are twice the values of ``target``. Return None if the
-    claim is not solved for its quantity, or if the quantity would have no real value: the claim is solved for k, and
-    the known formula, one for k^2, is negative.
+    claim gives no single quantity (``named.solve`` is None), or if the quantity would have no real value, as k with a
+    known formula for k^2 that is negative.
     """
     function = _FUNCTIONS_OF_ENDINGS.get(ending_of(known.name))
     if function is None:

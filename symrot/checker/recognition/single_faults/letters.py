@@ -98,10 +98,10 @@ def _symbols_of(definitions: Mapping[str, Node], numeric: NumericFilter) -> set[
 
 
 def _active(named: NamedFormula, atoms: dict[Node, Values], places: list[PointOfLetters]) -> dict[Node, Values]:
-    """Return the letters among ``atoms`` on which the claim's formula depends: for a trace, only the diagonal entries.
+    """Return the letters among ``atoms`` whose change by 0.1 changes the value of the claim's formula.
 
-    Letters that are factors or arguments of the claim's left side are returned too. If there are fewer than MANY
-    ``atoms``, all are returned.
+    Of the 9 entries of a matrix in a trace, these are the 3 on the diagonal. Letters that are factors or arguments of
+    the claim's left side are returned too. If there are fewer than MANY ``atoms``, all are returned without a test.
     """
     formula = named.formula
     if len(atoms) < MANY:

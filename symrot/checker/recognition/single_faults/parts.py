@@ -32,7 +32,10 @@ LARGEST = 400
 """The largest numerator and denominator of a rational number that is recognised by its value."""
 
 HALVES = {Fraction(2): "half_angle", Fraction(1, 2): "double_half_angle"}
-"""Factor that is missing before an inverse function, as 2 before acos(u) -> the code of this fault."""
+"""Factor that is missing before an inverse function -> the code of the fault.
+
+For the claim ``theta = acos(u)``, right is ``2*acos(u)``: the factor 2 is missing, and the code is "half_angle".
+"""
 
 Values = tuple[Any, ...]
 """The values of a formula, one for each test point: each is a number, or a matrix as a tuple of rows."""
@@ -49,7 +52,10 @@ class Part(NamedTuple):
 
 
 class Correction(NamedTuple):
-    """A correction of a part: the tree ``made`` that takes the part's place, and the code and the cost of the fault."""
+    """A correction of one part of a claim's formula: the tree ``made`` replaces the part.
+
+    ``code`` and ``cost`` are those of the corrected fault.
+    """
 
     made: Node
     code: str
@@ -121,7 +127,7 @@ class Valued:
 
     @cached_property
     def entries(self) -> Mapping[int, "Valued"]:
-        """{number: entry} for a written-out matrix or list, numbered row by row; empty for other parts.
+        """{number: entry} if ``node`` is a written-out matrix or list, numbered row by row; otherwise empty.
 
         An entry without a node of its own, such as the zeros of ``diag(a, b, c)``, is left out.
         """
@@ -132,11 +138,12 @@ class Valued:
 
     @cached_property
     def arguments(self) -> Sequence[tuple["Valued", "Inward"]]:
-        """Pairs (argument of ``node``, function that computes the values that this argument should have).
+        """Pairs (argument of the operation ``node``, function that solves the operation for this argument).
 
-        The function takes the values that ``node`` should have, and assumes that its other arguments are right.
+        The function takes the values that the operation should have for the whole formula to be right, and returns
+        those that the argument should have if all other arguments are right: for a in a + b, the values minus b.
 
-        Empty if there is no such function for the kind of ``node``, or if an argument has no value at a test point.
+        Empty if no such function exists for the operation, or if an argument has no value at a test point.
         """
         inward = _INWARD.get((self.node.kind, self.node.value if self.node.kind == "call" else None))
         children = [Valued(child, self.points, (*self.path, place), self.node.kind)
@@ -156,10 +163,11 @@ For the argument a of a + b, the function subtracts the values of b. It returns 
 
 
 def _inward(function: "OfArgument", by_point: Sequence[Sequence[Any]], place: int) -> Inward:
-    """Return a function from the values that an operation should have to the values that one argument should have.
+    """Return a function that solves an operation for its argument number ``place``, for all test points at once.
 
-    ``place`` is the index of the argument, and ``by_point`` has the present values of all arguments at each test point.
-    ``function`` solves the operation for an argument at one point; it comes from the table ``_INWARD``.
+    The function takes the values that the operation should have and returns those that the argument should have, or
+    None. ``by_point`` has, for each test point, the values that the arguments have in the claim. ``function``, from the
+    table ``_INWARD``, solves the operation at one point.
     """
     others = [[value for n, value in enumerate(own) if n != place] for own in by_point]
     if not any(is_matrix(value) for own in by_point for value in own):
@@ -214,10 +222,10 @@ def _wrong_row(values: Values, needed: Values) -> int | None:
 
 
 def _row_of_matrix(whole: Valued, needed: Values, row: int) -> Iterator[tuple[Valued, Values]]:
-    """Yield (entry, values that it should have) for the entries in one row of the matrix in ``whole``.
+    """Yield (entry, values that the entry should have) for the entries in row ``row`` of the matrix in ``whole``.
 
-    ``whole`` is a matrix times a column. If one entry alone changes to its values, the product gets the values
-    ``needed``. Entries that multiply a zero of the column are left out.
+    ``whole`` is a matrix times a column. If one of the yielded entries alone changes to the values in its pair (one for
+    each test point), the product has the values ``needed``. Entries that multiply a zero of the column are left out.
     """
     factors = whole.node.args
     place, matrix = next(((n, factor) for n, factor in enumerate(factors) if matrix_entries(factor)), (0, whole.node))

@@ -29,16 +29,16 @@ RADIUS = re.compile(r"[rR](_?\w+)?|a")
 COORDINATES = ("x", "y", "z")
 
 UNUSUAL = 2
-"""Number that `strangeness` adds to its count of changed names for each radius that is renamed to another length.
+"""Number that `strangeness` adds for each radius that a renaming turns into another length, or the reverse.
 
-The same number is added for another length that is renamed to a radius.
+The function `strangeness` measures how unlikely a renaming is; each changed name counts 1.
 """
 
 MOST_STEPS = 400
-"""Largest number of search steps for the renamings of one known formula in which each symbol gets a name.
+"""Largest number of steps of the search for renamings that give each symbol of a known formula a name of the claim.
 
-For renamings that leave one symbol without a name, since the claim lacks it, the search has the same number of steps
-again. They are shared equally among the symbols that may be left out.
+A second search, for renamings that leave one symbol without a name, may take as many steps; they are shared equally
+among the symbols that can be left out.
 """
 MOST = 6
 """The largest number of renamings of one known formula that `renamings` returns."""
@@ -120,11 +120,11 @@ def strangeness(renaming: dict[str, str | None]) -> int:
 def _extended(
     renaming: dict[str, str | None], order: Sequence[str], fitting: dict[str, list[str]], count: int
 ) -> Iterator[dict[str, str | None] | None]:
-    """Yield extensions of ``renaming`` to the symbols ``order`` of the known formula, and None at each search step.
+    """Yield the ways to complete ``renaming`` by names for the symbols ``order`` of the known formula.
 
-    The caller counts the steps, to give up after too many. ``fitting`` maps each symbol to the claim's names that may
-    mean the same, and ``count`` is the number of names in the claim, of which at most one is left over. A symbol whose
-    own name is among those of the claim keeps its name.
+    Also yield None at each step of the search, so that the caller can count the results and give up. ``fitting`` maps
+    each symbol to the claim's names that may mean the same; ``count`` is the number of names in the claim, of which all
+    but at most one must be used. A symbol keeps its name if this is one of the claim's names in ``fitting``.
     """
     yield None
     if not order:

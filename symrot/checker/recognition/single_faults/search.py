@@ -49,9 +49,10 @@ Renaming = dict[str, str | None]
 def near_formulas(claim: Claim, named: NamedFormula, fits: Callable[[Known], bool]) -> list[Near]:
     """Return changes of a claim's formula that may each turn it into a known formula, the cheapest first.
 
-    ``fits(known)`` decides which known formulas are compared. A single result with the fault code "none" means that a
-    formula with the root of a sum equals a known one without a change. The list is empty if no such change is found, if
-    the formula has no values or is too long, and if it equals a known formula under the hypotheses of the claim.
+    ``fits(known)`` decides which known formulas are compared. A single result with the code "none" means that a formula
+    with the root of a sum has the values of a known one without a change. The list is empty if no change is found, if
+    the formula is too long or cannot be evaluated at enough random points, and if the claim has hypotheses and its
+    formula has the values of a known one already.
     """
     search = _search(claim, named)
     if search is None:
@@ -76,8 +77,9 @@ def _pairs(
 ) -> Iterator[tuple[Known, Renaming]]:
     """Yield the pairs (known formula, renaming of its symbols to the claim's letters) to be compared with a claim.
 
-    The formulas are those for which ``fits`` is true, and relations solved for the claim's quantity. Formulas that
-    differ much from the claim's are skipped: a number for a matrix, or two symbols more.
+    The formulas are those for which ``fits`` is true, and relations solved for the claim's quantity. Some known
+    formulas are skipped: scalars if the claim's formula is a matrix and the reverse, and formulas with at least two
+    symbols more or fewer than the claim's. So are most formulas with angles if the claim has none, and the reverse.
     """
     letters = search.letters
     names, quantity = [text_of(atom) for atom in letters.atoms], text_of(quantity_node(named))
@@ -135,7 +137,10 @@ def has_root_of_sum(formula: Node) -> bool:
 
 
 def _relations(quantity: str) -> Iterator[tuple[str, Known]]:
-    """Yield (symbol, formula) for each known relation, solved for a symbol that the claim may call ``quantity``."""
+    """Yield (symbol, formula for it) from the known equations, for symbols that may mean the claim's ``quantity``.
+
+    For the quantity T, the equation ``M = I*alpha`` gives ("M", I*alpha) if a claim may write T for M.
+    """
     for name, known in solved_relations():
         if is_fitting(name, quantity, is_angle=False):
             yield name, known

@@ -1,6 +1,6 @@
 """Equations solved for one of their letters: ``I w1 + M t = I w2`` gives a formula for each of I, w1, M, t and w2.
 
-The search for faults compares formulas for one quantity, and so can search equations too.
+With them, the search for faults, which compares two formulas for the same quantity, can compare equations too.
 """
 
 from collections.abc import Iterator, Sequence
@@ -41,10 +41,11 @@ class Solution(NamedTuple):
 
 @cache
 def solved_relations() -> tuple[SolvedRelation, ...]:
-    """Return the known relations (equations), each solved for every symbol that is a factor of each term with it.
+    """Return the known relations (equations), each solved for its symbols where this is easy.
 
-    The factor must have the same exponent, 1 or 2, in all these terms, and a term without it must exist. Relations are
-    solved for an angle if it occurs only in its cosine or only in its sine, and this is such a factor with exponent 1.
+    It is easy for a symbol w if each term of the equation has a factor w or no w at all (or a factor w^2 or no w), and
+    a term without w exists. A relation is also solved for an angle theta if this holds for w = cos(theta) or
+    sin(theta), without squares, and theta occurs nowhere else.
     """
     solved = []
     for known in (known for group in by_fingerprint().values() for known in group if known.is_relation):
@@ -96,10 +97,11 @@ def solved_claims(left: Node, right: Node, atoms: Sequence[Node]) -> Iterator[Na
 
 
 def put_back(left: Node, right: Node, named: NamedFormula, tree: Node) -> tuple[Node, Node] | None:
-    """Return the two sides of the equation ``left == right`` with a repair that was made in its solved form.
+    """Return the two sides of the equation ``left == right`` with the repair of one term put in.
 
-    ``named`` is the equation solved for a letter, ``tree`` the repaired ``named.formula``. Return None unless exactly
-    one term differs between these two formulas.
+    ``named`` is the same equation solved for a letter, and ``tree`` its formula after the repair: if a term of ``tree``
+    differs from that of ``named.formula``, it replaces the old term in ``left`` and ``right``. Return None if the
+    formulas differ in more terms, in none, or in the number of terms.
     """
     before, after = _terms(named.formula), _terms(tree)
     changed = [(old, new) for old, new in zip(before, after, strict=False) if old != new]

@@ -22,7 +22,10 @@ INVERSES: dict[str, Callable[[float], float]] = {
 }  # fmt: skip
 """Name of a function -> its inverse, which computes the argument from the value that the call should have."""
 SLACK = 1000.0
-"""Tolerance of the quick test `Tape.may_have_too_much`, in units of ``CLOSE``, the tolerance of the final test."""
+"""Tolerance of `Tape.may_have_too_much`, a quick test for a superfluous term or factor, in units of ``CLOSE``.
+
+``CLOSE`` is the tolerance of the final test.
+"""
 
 
 class Operation(NamedTuple):

@@ -15,9 +15,10 @@ from symrot.checker.units.units import read_unit
 __all__ = ["has_other_unit"]
 
 UNITS = {"[kg]": 1.37, "[m]": 1.61, "[s]": 0.83}
-"""Base unit -> arbitrary factor that converts numbers in this unit to an invented unit.
+"""Base unit -> arbitrary factor for a test of units: a mass counts 1.37 times, a length 1.61 times its number in SI.
 
-After this conversion of the letters, the values of formulas with different units have changed by different factors.
+If the letters are multiplied by the factors of their units, two formulas with different units change by different
+factors.
 """
 
 

@@ -51,17 +51,18 @@ COST = {
     "share_of_entries": 0.6,
     # additions to a tree
     "missing_term_of_entry": 1.75, "missing_term_in_bracket": 1.8, "missing_matrix": 1.4, "other_definition": 1.3,
-    # a piece replaced by the value that it needs
+    # a part of the claim replaced by a formula with the value that makes the claim true
     "solved_sign": 0.85, "solved_factor_2": 1.16, "solved_rational_factor": 1.3, "solved_number": 1.25,
     "solved_factor": 1.22, "solved_factor_of_number": 0.5, "solved_term_of_sum": 1.5, "solved_term": 1.65,
     "solved_swap": 1.0, "solved_neighbour": 1.0, "solved_symbol": 1.2, "solved_matrix_term": 0.04,
     # a part of a formula near a known one: per factor e between two numbers, a fraction in place of a number, a power
     # other than the square, and a function other than the one that is often confused with it
     "exponent": 1.1, "per_factor_e": 0.1, "no_integer": 0.15, "not_a_square": 0.1, "other_function": 0.1,
-    # growth with the size of the inserted formula, and with the depth of the piece
+    # additions for each part of an inserted formula, and for each level between the whole formula and the edited part
     "per_piece_added": 0.02, "rational_in_front": 0.04, "per_level": 0.01, "per_level_of_matrix": 0.05,
 }  # fmt: skip
 """Code of a fault such as ``sign_of_term`` -> the cost of an edit that corrects it; cheaper edits are tried first.
 
-The other keys name special kinds of edits: their values are costs, or are added to or multiplied by other costs.
+Keys that are not in FAULT_DESCRIPTIONS name special kinds of edits. Some of their values are costs; others are added to
+a cost or multiply one, as the comments say.
 """

@@ -17,7 +17,8 @@ from symrot.checker.repair.edits.trees import put, square_of, substituted, with_
 __all__ = ["Edit", "single_edits"]
 
 FEW = 3
-"""Up to this number of occurrences of an angle, all of them are as likely to be wrong together as one alone."""
+"""The largest number of sines and cosines of one angle for which ``COST["angle_everywhere"]`` is the cost of halving or
+doubling the angle in all of them; for more, it is ``COST["angle_everywhere_often"]``."""
 
 
 @dataclass(frozen=True)
