@@ -278,11 +278,17 @@ def test_what_a_page_shows_is_read_as_a_person_reads_it(text, value):
         r"(x]",
         "I + \\omega",
         r"\sqrt[3]{x}",
+        "f(x, x)",
+        "f()",
+        "f(x)",
+        r"\sin^\omega x",
+        r"\exp I",
+        r"\mathrm{vee} \omega",
     ],
 )
 def test_what_has_no_meaning_is_not_read(text):
     with pytest.raises(Unread):
-        read(text, {r"\omega": V, "I": Matrix.diag(A, B, C), "x": x})
+        read(text, {r"\omega": V, "I": Matrix.diag(A, B, C), "x": x, "f": lambda vector: vector.T})
 
 
 @pytest.mark.parametrize(

@@ -52,10 +52,10 @@ class Real:
 
     @cached_property
     def near_functions(self) -> dict[str, str]:
-        """The C name of each function in loops over many samples: ``sin`` -> ``symrot_sin``, from ``symrot_math.h``.
+        """The C name of each function in loops over many samples, without branches: ``sin`` -> ``symrot_sin``.
 
-        The functions of ``symrot_math.h`` are valid for moderate angles only. A function without a version there has
-        the name in ``functions``.
+        Such versions, in ``symrot_math.h`` or printed with the kernel (``symrot_near_sinc``), are valid for moderate
+        angles only. A function without such a version has the name in ``functions``.
         """
         own = {name: f"symrot_near_{name}{self.suffix}" for name in NEAR}
         shared = {"sin": "sin", "cos": "cos", "atan2": "atan2", "select_ge": "choose_ge"}
@@ -86,8 +86,8 @@ def _as_float(value: float) -> float:
 def c_expression(node: Node, real: Real = DOUBLE, near: bool = False) -> str:
     """Return a formula as a C expression of type ``real``, with brackets that preserve the order of evaluation.
 
-    With ``near``, functions of ``symrot_math.h``, such as ``symrot_sin``, are called, which compilers vectorise but
-    which are valid for moderate angles only.
+    With ``near``, functions without branches are called, such as ``symrot_sin`` of ``symrot_math.h``: compilers
+    vectorise them, but they are valid for moderate angles only.
     """
     return text(rename(node, functions=real.near_functions if near else real.functions), 0, real.literal)
 
@@ -152,8 +152,8 @@ def function_body(
     real : Real
         The C type of the numbers.
     near : bool
-        Whether the functions of ``symrot_math.h``, such as ``symrot_sin``, are called, which are valid for moderate
-        angles only.
+        Whether functions without branches, such as ``symrot_sin`` of ``symrot_math.h``, are called; they are valid for
+        moderate angles only.
     late : sequence of Argument
         All output arguments, in the order in which to compute them, if they are to be stored after all of them are
         computed. If empty, each output component is stored as soon as it is computed.

@@ -210,7 +210,10 @@ class _Interpreter(Cursor):
     def function(self, function: Callable[[Any], Any]) -> Any:
         script = self.script("^")
         power = script and self.value(script.inside)
-        value = function(self.atom())
+        argument = self.atom()
+        if isinstance(argument, MatrixBase) or isinstance(power, MatrixBase):
+            raise Unread("expected numbers as the argument and the power of a function, got a matrix")
+        value = function(argument)
         return value if power is None else value**power
 
     def fraction(self, fraction: Fraction) -> Any:
@@ -275,7 +278,11 @@ class _Interpreter(Cursor):
         value = self.names.get(text)
         if callable(value) and not isinstance(value, (Expr, MatrixBase)):
             self.expect("(")
-            return value(*self.listed(self.sum, ")"))
+            arguments = self.listed(self.sum, ")")
+            try:
+                return value(*arguments)
+            except (TypeError, AttributeError) as error:  # too many arguments, or a number in place of a matrix
+                raise Unread(f"expected the arguments that {text} has on this page, got others: {error}") from error
         if text in self.names:
             return value
         if text.startswith(("\\dot", "\\ddot")) and self.rates:
@@ -336,9 +343,15 @@ def _after(node: Node, mark: str) -> Row | None:
     return Row(row.items[1:], row.start, row.end) if row.items and row.items[0].text == mark else None
 
 
+def _vee(matrix: MatrixBase) -> Matrix:
+    if matrix.shape != (3, 3):
+        raise Unread("expected a matrix of shape (3, 3) after vee, got another shape")
+    return Matrix([matrix[2, 1], matrix[0, 2], matrix[1, 0]])
+
+
 MATRIX_FUNCTIONS: dict[str, Callable[[MatrixBase], Any]] = {
     "tr": lambda matrix: matrix.trace(),
-    "vee": lambda matrix: Matrix([matrix[2, 1], matrix[0, 2], matrix[1, 0]]),
+    "vee": _vee,
     "adj": lambda matrix: matrix.adjugate(method="berkowitz"),
 }
 
