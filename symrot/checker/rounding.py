@@ -14,7 +14,7 @@ from symrot.exact.intervals import enclosure
 __all__ = ["rounded_value", "with_rounding"]
 
 LONG_WHOLE = re.compile(r"[1-9]\d+[1-9]")
-"""Pattern of an integer that may be a rounded number; others, such as 3 and 1500, are exact."""
+"""Pattern of an integer that may be a rounded number, such as 157: three digits or more, neither 0 first nor last."""
 
 
 def with_rounding(claim: Claim, verdict: Verdict) -> Verdict:

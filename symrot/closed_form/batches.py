@@ -290,8 +290,9 @@ def spin_ups(across: Column, own: Column, torque: Column, axis: int, omega: Floa
 def driven(constants: Constants | Sequence[Constants], omega: Floats, start: Floats) -> Batch:
     """Return the motions of n bodies driven about one axis as a batch.
 
-    ``constants`` are the :class:`Constants` of one body, or a list of n, all with the same axis. ``start`` are the
-    initial attitudes that :func:`attitudes` returns, shape (n, 8) or (8,).
+    ``constants`` are the :class:`Constants` of one body, or a list of n, all with the same axis. ``omega`` are the
+    initial angular velocities, rad/s, shape (n, 3). ``start`` are the initial attitudes from :func:`attitudes`, shape
+    (n, 8) or (8,): the four components of each quaternion as pairs of doubles.
     """
     bodies = [constants] * len(omega) if isinstance(constants, Constants) else constants
     axis = bodies[0].axis

@@ -32,9 +32,10 @@ _NAMES = (*INVERSE, log)
 
 @dataclass(frozen=True)
 class Lift:
-    """A condition that implies that some polynomial is zero: all polynomials ``numerators`` of another ring are zero.
+    """A proof that a sum of inverse functions is zero follows if all polynomials ``numerators`` of ``ring`` are zero.
 
-    For example, ``D = asin(x) + acos(x) - pi/2`` is zero if ``sin(D)`` and ``cos(D) - 1`` are zero.
+    For example, ``D = asin(x) + acos(x) - pi/2`` lies between -2 pi and 2 pi, and is zero if ``sin(D)`` and
+    ``cos(D) - 1`` are zero.
     """
 
     ring: FormulaRing

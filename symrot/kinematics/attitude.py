@@ -70,6 +70,7 @@ def convert(source: str, target: str, values: Sequence[Any] | Matrix | None = No
     converted = chart(target).of_quaternion(q)
     if converted.has(nan, zoo):
         raise InputError(
-            f"convert: expected an attitude that {target} describes by one value, got {tuple(parameters)} as {source}"
+            f"convert: expected an attitude with unique parameters in the description {target}, got the attitude with "
+            f"{tuple(parameters)} in the description {source}, which has none or many"
         )
     return converted

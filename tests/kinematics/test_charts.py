@@ -311,5 +311,7 @@ def test_conversions_of_values_are_limits_or_refused():
         ("mrp", (-1, 0, 0, 0)),
         ("ZXZ", (1, 0, 0, 0)),
     ]:
-        with pytest.raises(InputError, match=f"expected an attitude that {target} describes by one value"):
+        with pytest.raises(
+            InputError, match=f"expected an attitude with unique parameters in the description {target}"
+        ):
             attitude.convert("quaternion", target, q)

@@ -265,7 +265,7 @@ class Terms:
         return (self.neg(a), True) if value is not None and value & self._sign_bit(a) else (a, False)
 
     def add(self, a: int, b: int) -> int:
-        """Return the term for ``a + b``, rounded."""
+        """Return the number of the term for the rounded floating-point value of a + b, for the terms a and b."""
         folded = self._folded(a, b, lambda x, y: x + y)
         if folded is not None:
             return folded
@@ -277,11 +277,11 @@ class Terms:
         return self._add("add", self.width(a), *sorted((a, b)))
 
     def sub(self, a: int, b: int) -> int:
-        """Return the term for ``a - b``, rounded."""
+        """Return the number of the term for the rounded floating-point value of a - b, for the terms a and b."""
         return self.add(a, self.neg(b))
 
     def mul(self, a: int, b: int) -> int:
-        """Return the term for ``a*b``, rounded."""
+        """Return the number of the term for the rounded floating-point value of a*b, for the terms a and b."""
         folded = self._folded(a, b, lambda x, y: x * y)
         if folded is not None:
             return folded
@@ -311,7 +311,7 @@ class Terms:
         return self._add("mul", width, *sorted((a, b)))
 
     def div(self, a: int, b: int) -> int:
-        """Return the term for ``a/b``, rounded."""
+        """Return the number of the term for the rounded floating-point value of a/b, for the terms a and b."""
         if self._value(b) != 0.0:
             folded = self._folded(a, b, lambda x, y: x / y)
             if folded is not None:
@@ -326,7 +326,7 @@ class Terms:
         return self.neg(quotient) if first != second else quotient
 
     def sqrt(self, a: int) -> int:
-        """Return the term for the square root of ``a``, rounded."""
+        """Return the number of the term for the rounded square root of the term a."""
         return self._add("sqrt", self.width(a), a)
 
     def fma(self, a: int, b: int, c: int) -> int:

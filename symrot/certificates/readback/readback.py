@@ -443,7 +443,7 @@ def _blocks(cursor: Cursor, reader: _BodyReader, scope: _Scope) -> None:
     cursor.expect("}")
     # both computations must perform the same operations
     if plain.written != scope.written:
-        raise cursor.fail("a second loop over samples that assigns the same outputs as the first", "other outputs")
+        raise cursor.fail("the second loop over samples to assign the same outputs as the first", "other outputs")
 
 
 def _finished(

@@ -126,6 +126,6 @@ def parameter_range(
     except KeyError as function:
         raise InputError(
             f"--box: expected {name} to be a formula of + - * / and {', '.join(_FUNCTIONS)} if its constants vary, got "
-            f"{text(formula)} with {function.args[0]}"
+            f"{text(formula)}, which contains {function.args[0]}"
         ) from None
     return min(each.low for each in enclosures), max(each.high for each in enclosures)

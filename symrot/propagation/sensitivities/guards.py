@@ -164,7 +164,9 @@ class Guards:
         return {name: value for name, (value,) in self._slopes[key].items()}, self._slopes[(*key, "by")]
 
     def _duals(self, parameters: Parameters, interval: Interval, t: float, y: Floats, kind: str) -> dict[str, Any]:
-        """Return the inputs of formulas, name -> dual number, with derivatives by time, states and variables."""
+        """Return the value of each name in a guard's formula, with its derivatives by the time, the states and the
+        variables by which the motion is differentiated, as a map from the name to a dual number.
+        """
         values, rows = self.bound(parameters, interval, kind)
         inputs: dict[str, Any] = {name: float(mode) for name, mode in interval.modes.items()}
         for name, value in values.items():

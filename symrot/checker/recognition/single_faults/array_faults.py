@@ -194,7 +194,7 @@ def _shape(node: Node, numeric: NumericFilter) -> tuple[int, int] | None:
 
 
 def _scalars(formula: Node, numeric: NumericFilter, letters: Letters) -> Iterator[Node]:
-    """Yield scalars by which a term may have to be multiplied, such as sin(phi), sin(phi)^2 and 1/sin(phi)."""
+    """Yield factors that a claim may have lost, such as sin(phi), sin(phi)^2 and 1/sin(phi) for an angle phi in it."""
     made: dict[Node, None] = dict.fromkeys([LACKING] if LACKING in letters.atoms else [])
     for angle in letters.angles:
         for function in ("sin", "cos", "tan"):
