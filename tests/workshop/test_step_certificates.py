@@ -144,7 +144,7 @@ def test_coefficients_of_dop853_fulfil_the_conditions_to_25_digits():
     method = step_text("tumbling_prism", "dop853").method
     assert 0 < max(require_order(method)) < order.DEFECT
     wrong = replace(method, weights=dict(method.weights) | {0: method.weights[0] + Fraction(1, 10**20)})
-    with pytest.raises(CertificateError, match="violates the order condition of a tree with 1 nodes"):
+    with pytest.raises(CertificateError, match="violates the order condition of a rooted tree with 1 node:"):
         require_order(wrong)
     text = step_text("damped_disk", "dop853")
     (first, _), *others = text._rates_program.outputs

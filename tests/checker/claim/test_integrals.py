@@ -17,7 +17,7 @@ def test_an_integral_is_read_as_printed(text, verdict):
 
 
 def test_a_raised_limit_is_a_whole_number_or_a_time():
-    with pytest.raises(InputError, match="a whole number or T as a raised limit"):
+    with pytest.raises(InputError, match="a whole number or the name T as the superscript upper limit"):
         symrot.check("∫₀⁺ x dx = 1")
 
 
