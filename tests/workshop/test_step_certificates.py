@@ -182,7 +182,7 @@ def test_order_conditions_of_all_trees():
     """There are 1, 1, 2, 4, 9 and 20 rooted trees of 1 to 6 nodes; RK4 fulfils those up to 4 and no more."""
     assert [len(trees(size)) for size in range(1, 7)] == [1, 1, 2, 4, 9, 20]
     require_order(RK4)
-    with pytest.raises(CertificateError, match="a tree with 5 nodes"):
+    with pytest.raises(CertificateError, match="a rooted tree with 5 nodes"):
         require_order(replace(RK4, order=5))
 
 
