@@ -365,8 +365,8 @@ def _require_arguments(file: str, source: str, name: str, signature: Signature, 
     functions = functions_of(source, file)
     for function, expected in ((name, one), (f"{name}_batch", batch)):
         if functions[function].parameters != tuple(expected):
-            wanted, got = (", ".join(map(_declaration, each)) for each in (expected, functions[function].parameters))
-            raise CertificateError(f"{file}: expected {function} to have the arguments ({wanted}), got ({got})")
+            right, wrong = (", ".join(map(_declaration, each)) for each in (expected, functions[function].parameters))
+            raise CertificateError(f"{file}: expected {function} to have the arguments ({right}), got ({wrong})")
 
 
 def _declaration(parameter: Parameter) -> str:
