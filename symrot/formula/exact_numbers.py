@@ -283,8 +283,7 @@ def _walk(node: expression.Node) -> Angle:
             name, arguments = rest
             if name not in _FUNCTIONS or len(arguments) != 1:
                 raise ValueError(
-                    f"the functions allowed in a number are {', '.join(_FUNCTIONS)}, each with one argument; got "
-                    f"{name} with {len(arguments)}"
+                    f"the functions allowed in a number are {', '.join(_FUNCTIONS)}, each with one argument, got {name}"
                 )
             value = _exactly(_FUNCTIONS[name](_walk(arguments[0])))
         case _:
