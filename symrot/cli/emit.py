@@ -16,7 +16,7 @@ def _emit(options: Namespace) -> int:
     from symrot.workshop import kernel_files as kernels
 
     if sum(map(bool, (options.kernel, options.all, options.check, options.list))) != 1:
-        raise InputError("emit: expected exactly one of a KERNEL or SCENE, --all, --check and --list "
+        raise InputError("emit: expected exactly one of these: KERNEL (or SCENE), --all, --check, --list "
                          "(see `symrot emit --help`)")  # fmt: skip
     if options.cmake and (options.directory is None or options.target not in (None, "c") or not options.kernel):
         raise InputError("--cmake: expected a KERNEL or SCENE, -o DIR and no --target other than c "

@@ -152,7 +152,7 @@ def _variables(equations: Equations, name: str) -> tuple[Symbol, ...]:
     if name in held:
         return (held[name],)
     groups = [group for group, members in families.items() if set(members) & set(equations.states)]
-    raise InputError(f"expected derivatives by states or constants of the equations of motion "
+    raise InputError(f"expected derivatives with respect to states or constants of the equations of motion "
                      f"({', '.join(['y', *groups, *sorted(held)])}), got {name!r}")  # fmt: skip
 
 

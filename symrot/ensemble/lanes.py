@@ -146,7 +146,8 @@ class Lanes:
         carry.argtypes, carry.restype = (ctypes.c_double, ctypes.c_double), ctypes.c_double
         if carry(1.0, 2.0**-60) != 2.0**-60:
             raise CompilerError(
-                f"the compiled kernel {path} computes wrong rounding errors of sums; compile without -ffast-math"
+                f"the compiled kernel {path} does not compute the rounding errors of sums correctly; compile it "
+                "without -ffast-math"
             )
 
     def jet(self, t: float, y: Sequence[float], p: Sequence[float], unit: float = 1.0) -> Floats:

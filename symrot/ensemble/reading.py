@@ -116,8 +116,8 @@ def _quaternions(attitude: Any) -> ArrayLike:
         right &= (np.cross(array[:, 0], array[:, 1]) * array[:, 2]).sum(axis=1) > 0
         if not right.all():
             raise InputError(
-                "attitude: expected rotations, matrices with orthonormal rows, to 1e-9, and the determinant +1, got "
-                f"another matrix in trajectory {int(np.argmin(right))}"
+                "attitude: expected rotation matrices (rows orthonormal to within 1e-9, determinant +1), got another "
+                f"matrix in trajectory {int(np.argmin(right))}"
             )
         return dcm_to_quaternion(array)
     if array.shape[1:] != (4,):
@@ -203,7 +203,7 @@ def _columns(scene: Scene, places: dict[str, Place], name: str, values: ArrayLik
         if not scene.body.principal.given_axes:
             raise InputError(
                 "principal: expected a body given along its principal axes, got a body with products of inertia; vary "
-                f"{', '.join(PLACES)}"
+                f"{', '.join(PLACES)} instead"
             )
         return dict(zip(PRINCIPAL, _array(values, (3,), name, "kg m^2").T, strict=True))
     components = [key for key, place in places.items() if _field(key, place) == name != key]

@@ -60,7 +60,10 @@ def _obj(content: bytes) -> Facts:
         if key == "v":
             # trimesh divides the numbers of all lines evenly
             if len(words) < 3 or len(words) != (form or len(words)):
-                raise InputError(f"expected lines of vertices with equally many numbers, 3 or more, got line {number}")
+                raise InputError(
+                    "expected the same number of values, 3 or more, in every line that begins with v, got "
+                    f"{len(words)} in line {number}" + (f" after {form} in the lines before" if form else "")
+                )
             form = len(words)
             coordinates.extend(map(float, words[:3]))
         if key == "f":

@@ -282,7 +282,9 @@ def _walk(node: expression.Node) -> Angle:
         case "call":
             name, arguments = rest
             if name not in _FUNCTIONS or len(arguments) != 1:
-                raise ValueError(f"a number may use {', '.join(_FUNCTIONS)} of one argument, not {name}")
+                raise ValueError(
+                    f"the functions allowed in a number are {', '.join(_FUNCTIONS)}, each with one argument, got {name}"
+                )
             value = _exactly(_FUNCTIONS[name](_walk(arguments[0])))
         case _:
             value = _OPERATORS[kind](_walk(rest[0]), _walk(rest[1]))

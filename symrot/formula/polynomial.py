@@ -129,7 +129,7 @@ class Polynomial:
         name: str
         ((name, power),) = monomial
         if power != 1 or coefficient != 1:
-            raise ValueError(f"expected one generator, got {self}")
+            raise ValueError(f"expected a single variable, such as x, got {self}")
         return name
 
 

@@ -305,6 +305,6 @@ def require_points(added: Sequence[PointMass], subtracted: Sequence[tuple[str, P
         if gone > there * (1 + DENSITY):
             place = ", ".join(f"{float(x):.6g}" for x in point)
             raise InputError(
-                f"{name}: expected no more mass to subtract at a point than the other point masses have there, got "
-                f"{gone:.6g} kg to subtract from {there:.6g} kg at ({place}) m in the axes of the body"
+                f"{name}: expected at most {there:.6g} kg to subtract at ({place}) m in the axes of the body, since "
+                f"the other point masses there have no more mass, got {gone:.6g} kg"
             )

@@ -70,7 +70,7 @@ def convert(source: str, target: str, values: Sequence[Any] | Matrix | None = No
     converted = chart(target).of_quaternion(q)
     if converted.has(nan, zoo):
         raise InputError(
-            f"convert: expected an attitude with unique parameters in the description {target}, got the attitude with "
-            f"{tuple(parameters)} in the description {source}, which has none or many"
+            f"convert: expected an attitude with unique parameters in the description {target}, got the attitude "
+            f"{tuple(parameters)} of the description {source}; it has no {target} parameters, or several sets"
         )
     return converted

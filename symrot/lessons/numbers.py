@@ -91,7 +91,8 @@ def _step(page: Page, number: Number) -> Step:
             if step.claim.startswith(number.step) and number.section in ("", section):
                 return step
     raise InputError(
-        f"{page.name}, {number.words!r}: expected the first words of a step of this page as `step`, got {number.step!r}"
+        f"{page.name}, {number.words!r}: expected `step` to be the first words of a step of this page, got "
+        f"{number.step!r}"
     )
 
 

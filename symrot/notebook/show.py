@@ -44,8 +44,8 @@ SingularityDossier or Emitted
     Raises
     ------
     InputError
-        For a value of another type, for a trajectory that reached none of its times or has only one time, and for a
-        trajectory without attitude whose torque is a Python function.
+        For a value of another type, for a trajectory that reached none of its sample times or has only one time, and
+        for a trajectory without attitude whose torque is a Python function.
 
     Examples
     --------
@@ -55,7 +55,7 @@ SingularityDossier or Emitted
     """
     name = next((kind.__name__ for kind in type(value).__mro__ if kind.__name__ in RENDERERS), None)
     if name is None or not type(value).__module__.startswith("symrot."):
-        raise InputError(f"expected a value of symrot, one of {', '.join(RENDERERS)}, got {type(value).__name__}")
+        raise InputError(f"expected an object of one of the types {', '.join(RENDERERS)}, got {type(value).__name__}")
     module, function = RENDERERS[name]
     render: Callable[[Any], str] = getattr(import_module(module), function)
     return render(value)

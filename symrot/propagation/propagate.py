@@ -170,7 +170,8 @@ def _refuse_sensitivities(scene: Scene, torque: Any, state: str) -> None:
         raise InputError(f"sensitivities: expected state='quaternion', got {state!r}; Euler angles have none")
     if torque is not None and scene.table is None:
         raise InputError(
-            "sensitivities: expected torques of the scene (formulas or a table of samples), got the argument torque"
+            "sensitivities: expected torques of the scene (formulas or a table of samples), got a function passed as "
+            "torque="
         )
 
 

@@ -313,8 +313,8 @@ class Trajectory(MotionSamples):
             raise InputError(f"times: expected 2 or more as the number of new samples, got {times}")
         if not len(self):
             raise InputError(
-                f"times: expected a list of sample times, got {times}: a number of samples divides the span of the "
-                "present samples, but the trajectory has no samples"
+                f"times: expected a list of sample times, got the number {times}: a number asks for evenly spaced "
+                "samples between the first and the last sample of the trajectory, but it has none"
             )
         return self.at(np.linspace(float(self.t.min()), float(self.t.max()), int(times)))
 
@@ -365,8 +365,8 @@ class Trajectory(MotionSamples):
             raise InputError(f"t0, t1: expected finite times in s, got {number.show(t0)} and {number.show(t1)}")
         if (self.has_external_torque and self.scene.table is None) or self._propagator is None:
             raise InputError(
-                "transition: expected a motion under torques of the scene (formulas or a table), got one under the "
-                "argument torque"
+                "transition: expected a motion under torques of the scene (formulas or a table), got one with a "
+                "function passed as torque="
             )
         # variational Taylor series, for every method, also for closed forms
         return self._propagator.transition(self.scene, float(times[0]), float(times[1]))

@@ -46,12 +46,12 @@ def check(
     if not source.endswith(".toml") and not Path(source).is_file():
         raise InputError(f"expected a claim 'left == right' or the path of a file of claims, got {source[:60]!r}")
     if units:
-        raise InputError("--unit: expected a claim as text, got a file; a file states its own units")
+        raise InputError("--unit: expected a claim as text, got a file; state the units in the file instead")
     if assumptions:
-        raise InputError("--given: expected a claim as text, got a file; a file states its own hypotheses")
+        raise InputError("--given: expected a claim as text, got a file; state the hypotheses in the file instead")
     for option, value in (stated or {}).items():
         if value:
-            raise InputError(f"--{option}: expected a claim as text, got a file; a file states its own context")
+            raise InputError(f"--{option}: expected a claim as text, got a file; state this in the file instead")
     # a claim that cannot be parsed gets the verdict "refused"
     return list(verdicts_of_file(source, repair, progress))
 

@@ -178,7 +178,7 @@ def _rows_of_tensor(value: Any, where: str) -> Matrix:
     Entries ij and ji that differ only by rounding become their mean; other differences raise InputError.
     """
     if len(value) != 3 or not all(isinstance(row, list | tuple) and len(row) == 3 for row in value):
-        fail(where, "three rows of three numbers in kg m^2, products with their minus sign", value)
+        fail(where, "three rows of three numbers in kg m^2, where I_xy = -integral of x y dm", value)
     rows = [[_entry(item, f"{where}[{i}][{j}]") for j, item in enumerate(row)] for i, row in enumerate(value)]
     limit = max(abs(rows[i][i]) for i in range(3)) * ASYMMETRY
     for i, j in ((0, 1), (0, 2), (1, 2)):
@@ -237,8 +237,9 @@ def _read_tensor(value: Mapping[str, Any], where: str, folders: Folders) -> Body
 
 def _no_fixed_point(value: Mapping[str, Any], where: str) -> None:
     if "fixed_point" in value:
-        fail(f"{where}.fixed_point", 'a body given by shapes; moments of inertia in a scene already refer to '
-                 'the fixed point, write only about = "fixed_point"', value["fixed_point"])  # fmt: skip
+        fail(f"{where}.fixed_point", "this key only for a body given by shapes", value["fixed_point"],
+                 "given moments of inertia refer to the fixed point already: leave this key out and write "
+                 'about = "fixed_point"')  # fmt: skip
 
 
 # --- shapes -----------------------------------------------------------------------------------------------------------

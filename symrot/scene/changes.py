@@ -415,7 +415,7 @@ def _set_inertia(scene: SceneContent, key: str, value: Any) -> None:
         if not scene.body.principal.given_axes:
             raise InputError(
                 "principal: expected a body given along its principal axes, got a body with products of inertia; "
-                f"change {', '.join(TENSOR)}"
+                f"change {', '.join(TENSOR)} instead"
             )
         inertia: Content = {"principal": value}
     else:

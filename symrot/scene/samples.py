@@ -151,7 +151,7 @@ def read_samples(
     twice = {after for before, after in pairwise(times) if after == before}
     for switch in values["switching_times"]:
         if switch not in twice:
-            fail(f"{where}.switching_times", "times that the samples have twice, before and after the jump, got "
+            fail(f"{where}.switching_times", "times of two samples each, one before and one after the jump, got "
                      f"{switch!r} s")  # fmt: skip
     first, last = map(float, span)
     if times[0] > first or times[-1] < last:
@@ -188,8 +188,9 @@ def _check_slopes(times: tuple[float, ...], moments: tuple[tuple[float, ...], ..
     for (before, here), (after, there) in pairwise(zip(times, moments, strict=True)):
         gap, change = after - before, max(abs(y - x) for x, y in zip(here, there, strict=True))
         if gap and not (gap >= 1 / _STEEPEST and change <= gap * _STEEPEST):
-            fail(place, f"a torque that changes by at most {_STEEPEST:g} N m/s between samples at least "
-                     f"{1 / _STEEPEST:g} s apart, got {change!r} N m within {gap!r} s after {before!r} s")  # fmt: skip
+            fail(place, f"samples at least {1 / _STEEPEST:g} s apart and a torque that changes by at most "
+                     f"{_STEEPEST:g} N m/s between them, got {change!r} N m within {gap!r} s after {before!r} "
+                     "s")  # fmt: skip
 
 
 def _read_file(

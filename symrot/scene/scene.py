@@ -398,7 +398,7 @@ def _read_torques(
     word = TABLE_KIND.kind
     tables = [index for index, item in enumerate(value) if isinstance(item, Mapping) and item.get("kind") == word]
     if len(tables) > 1:
-        fail(f"{where}[{tables[1]}].kind", "at most one torque of kind table: add their samples up", word)
+        fail(f"{where}[{tables[1]}].kind", "at most one torque of kind table", word, "add up the samples of the tables")
     formulas = [read_torque(value[i], body, f"{where}[{i}]") for i in range(len(value)) if i not in tables]
     times = span.start, span.stop
     samples = [read_samples(value[i], folder, f"{where}[{i}]", times, table_folders) for i in tables]

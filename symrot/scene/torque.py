@@ -128,7 +128,8 @@ def _formula(value: Any, where: str) -> str:
     # text that is no formula raises InputError
     node = expression.parse(value, where, switching=True)
     if _depth(node) > DEEPEST_FORMULA:
-        fail(where, f"a formula of at most {DEEPEST_FORMULA} levels", value, "put brackets around groups of terms")
+        fail(where, f"a formula of at most {DEEPEST_FORMULA} levels", value,
+                 "each further term of a sum adds a level; put brackets around groups of terms")  # fmt: skip
     if error := condition_error(node):
         fail(where, error, value)
     if _divides_by_zero(node):
@@ -203,7 +204,7 @@ def _fit_gravity(values: dict[str, Any], body: Body, where: str) -> dict[str, An
         fail(f"{where}.gravity", "the weight in N: the mass of the body is unknown", acceleration)
     if center is not None and body.center_of_mass is not None and center != body.center_of_mass:
         known = [float(item) for item in body.center_of_mass]
-        fail(f"{where}.center_of_mass", f"no value, or that of the body, {show(known)} m from the fixed point",
+        fail(f"{where}.center_of_mass", f"no value, or the same as for the body: {show(known)} m from the fixed point",
                  [float(item) for item in center])  # fmt: skip
     # not in the table: the body's; likewise its mass times gravity is the weight
     if center is None:

@@ -103,7 +103,7 @@ def _scene_and_motion(motion: SceneSource | MotionSamples) -> tuple[Scene, Traje
             raise InputError("show: expected one motion, got an ensemble; show one of its motions: ensemble[0].show()")
         times = motion.t[np.isfinite(motion.omega).all(axis=1)]  # s, those that the motion reached
         if not len(times):
-            raise InputError("show: expected a motion with samples, got one that reached none of its times")
+            raise InputError("show: expected a motion with samples, got one that reached none of its sample times")
         start, stop = (Fraction(float(time)) for time in (times.min(), times.max()))
         if start == stop:
             raise InputError(f"show: expected a trajectory over a span of time, got the single time {float(start)!r} s")

@@ -144,8 +144,8 @@ def _audit_step(
 ) -> list[str]:  # fmt: skip
     if object_file is not None and "scene" in data:
         raise InputError(
-            f"--object: expected a step without loops, got {path.name}: object code of a step with elliptic functions "
-            "cannot be compared"
+            f"--object: expected a step without loops, got {path.name}: a step with elliptic functions has loops, so "
+            "that its object code cannot be compared"
         )
     report = audit_step(path, data, rerun, scene, progress)
     if object_file is not None:
@@ -179,7 +179,10 @@ def audit_files(
 
 def _recomputed_bounds(data: Data, text: str, progress: Callable[[str], object]) -> list[str]:
     if data.get("rounding") is None:
-        raise CertificateError(f"{data['kernel']}: expected bounds to compute again, but the certificate has no bounds")
+        raise CertificateError(
+            f"{data['kernel']}: expected a certificate with bounds of rounding errors, which --rerun-bounds computes "
+            "again, got one without bounds; leave out --rerun-bounds"
+        )
     from symrot.certificates.rounding.section import check_section
 
     progress("bounding ..")

@@ -102,8 +102,8 @@ def _with_figures(page: Page) -> tuple[Page, list[Figure]]:
             items += by_section.pop(item.title, ())
     if by_section:
         raise InputError(
-            f"{page.name}: expected figures in sections of the page, got figures in sections that it lacks: "
-            f"{', '.join(map(repr, by_section))}"
+            f"{page.name}: expected every figure in a section of this page, got figures for sections that the page "
+            f"does not have: {', '.join(map(repr, by_section))}"
         )
     values = {each.name: getattr(page, each.name) for each in fields(Page)}
     return Page(**values | {"items": items}), top

@@ -104,7 +104,7 @@ def test_the_numbers_at_the_end_of_a_chain_are_decided():
 
 
 def test_a_temperature_in_degrees_is_refused():
-    with pytest.raises(InputError, match="expected units of mechanics, got '°C'; write a temperature in K"):
+    with pytest.raises(InputError, match="expected a temperature in K, got one in '°C'"):
         symrot.check("20°C = 293.15 K")
 
 

@@ -542,5 +542,5 @@ def test_no_error_blocks_are_assumed():
 
 @pytest.mark.parametrize("matrix", [2 * np.eye(3), -np.eye(3), np.eye(3) + 1e-6, np.full((3, 3), np.nan)])
 def test_matrices_that_are_no_rotations_are_refused(matrix):
-    with pytest.raises(symrot.InputError, match=r"attitude: expected rotations, .* in trajectory 1"):
+    with pytest.raises(symrot.InputError, match=r"attitude: expected rotation matrices .* in trajectory 1"):
         symrot.propagate_ensemble("t_handle", attitude=[np.eye(3), matrix], t=[0, 1])

@@ -136,8 +136,8 @@ def test_an_obj_file_with_other_spaces_comments_and_materials_is_read_or_refused
 
 
 @pytest.mark.parametrize("old,new,sentence", [
-    ("v 1.0 0.0 0.0\nv 1.0 1.0 0.0", "v 1.0 0.0\nv 1.0 1.0 0.0 0.0", "equally many numbers, 3 or more, got line 2"),
-    ("v 1.0 0.0 0.0\nv 1.0 1.0 0.0", "v 1.0 0.0 0.0 1.0\nv 1.0 1.0", "equally many numbers, 3 or more, got line 2"),
+    ("v 1.0 0.0 0.0\nv 1.0 1.0 0.0", "v 1.0 0.0\nv 1.0 1.0 0.0 0.0", "in every line that begins with v, got 2 in line 2 after 3 in the lines before"),
+    ("v 1.0 0.0 0.0\nv 1.0 1.0 0.0", "v 1.0 0.0 0.0 1.0\nv 1.0 1.0", "in every line that begins with v, got 4 in line 2 after 3 in the lines before"),
     ("v 1.0 0.0 0.0", "v 1,0 0,0 0,0", "expected a mesh in the format OBJ"),
     ("f 1 2 6 5", "f 1 2 6.0 5", "expected a mesh in the format OBJ"),
     ("f 1 2 6 5", "f 1 2 0 5", "expected positive vertex indices"),

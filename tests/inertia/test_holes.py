@@ -97,7 +97,7 @@ def test_a_hole_within_parts_is_accepted(parts):
       hole("cylinder", radius="1/2", length=1, density="8*x**2/radius")], "kg/m^3 where the other parts have"),
     ([BOX, hole("box", a=1, b=1, c=1), hole("box", (0.5, 0, 0), a=1, b=1, c=1)], "overlaps another hole"),
     ([Part("point_masses", {"masses": [1], "points": [[0, 0, 0]]}),
-      Part("point_masses", {"masses": [0.5], "points": [[0, 0, 1]]}, subtract=True)], "to subtract from 0 kg"),
+      Part("point_masses", {"masses": [0.5], "points": [[0, 0, 1]]}, subtract=True)], "expected at most 0 kg to subtract at"),
 ], ids=str)  # fmt: skip
 def test_a_hole_that_makes_the_density_negative_is_refused(parts, sentence):
     with pytest.raises(InputError, match=re.escape(sentence)) as refusal:

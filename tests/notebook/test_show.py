@@ -80,7 +80,7 @@ def test_an_ensemble_of_motions_that_stopped_shows_how_many():
 
 @pytest.mark.parametrize("value", [3, "t_handle", None])
 def test_other_values_are_refused(value):
-    with pytest.raises(symrot.InputError, match="a value of symrot, one of Trajectory"):
+    with pytest.raises(symrot.InputError, match="an object of one of the types Trajectory"):
         symrot.in_notebook(value)
 
 

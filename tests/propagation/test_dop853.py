@@ -330,7 +330,7 @@ def test_input_that_cannot_be_used_is_named(change, sentence):
     "blocks, scales", [((0, 3), (0.0,)), ((0, 3, 3, 7), (0, 0, 0)), ((0, 7), (0.0, 1.0)), ((), ())]
 )
 def test_blocks_cover_the_states_once(blocks, scales):
-    with pytest.raises(InputError, match="expected increasing edges from 0 to 7, the number of states"):
+    with pytest.raises(InputError, match=r"expected block edges that increase from 0 to 7 \(the number of states\)"):
         dop853.translation_unit(RIGID_BODY, "rigid_body", 7, 6, blocks, scales)
 
 

@@ -423,7 +423,7 @@ def test_odd_orders_are_refused(order):
 
 @pytest.mark.parametrize("blocks, scales", [((0, 1), (1.0,)), ((0, 1, 1, 2), (1, 1, 1)), ((0, 2), (1, 1))])
 def test_blocks_that_do_not_fit_are_refused(blocks, scales):
-    with pytest.raises(InputError, match="expected increasing edges from 0 to 2, the number of states"):
+    with pytest.raises(InputError, match=r"expected block edges that increase from 0 to 2 \(the number of states\)"):
         taylor.translation_unit(program({"x": "y", "y": "x"}), blocks, scales)
 
 

@@ -407,7 +407,7 @@ def test_a_folder_that_was_begun_again_with_other_chunks_takes_none_of_the_old_o
     old = sweep(path=path)
     shutil.rmtree(path)
     sweep(path=path, chunk=old._store.header.rows + 1)
-    with pytest.raises(InputError, match="got other chunks, because the sweep was begun again"):
+    with pytest.raises(InputError, match=r"got chunks of \d+, because another run has begun the sweep anew"):
         old._store.finish([], "")
 
 

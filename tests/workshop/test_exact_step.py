@@ -310,7 +310,7 @@ def test_boxes_beyond_the_range_of_the_bounds_are_refused(box, message):
 
 @pytest.mark.parametrize(("scene", "box", "message"), [
     ("tumbling_prism", BOX, "middle axis"), ("tumbling_prism", {"dt": (0, 1)}, "--box omega_1=LOW:HIGH"),
-    ("heavy_top_loops", BOX, "no errors of the exact step of a heavy top"),
+    ("heavy_top_loops", BOX, "does not bound the errors of the exact step of a heavy top"),
     ("tumbling_prism", {**WOBBLE, "omega_3": (1, 1.2), "omega_1": (0, 0)}, "middle axis"),
 ])  # fmt: skip
 def test_boxes_without_bounds_are_refused(monkeypatch, scene, box, message):

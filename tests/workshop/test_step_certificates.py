@@ -398,7 +398,7 @@ def _other_entry(section, name, value=1):
 @pytest.mark.parametrize(("change", "message"), [
     (_other_entry("step", "tolerance"), "'step' in the form"), (_other_entry("rates", "error"), "'rates' in the form"),
     (_other_entry("", "title", "a step without errors"), "'title' and 'kernel' to name the scene tumbling_prism"),
-    (_other_entry("", "regenerate", "symrot emit other"), "the command of the step"),
+    (_other_entry("", "regenerate", "symrot emit other"), "the command that emits the step"),
     # otherwise the rates would not be compared with those of tumbling_prism
     (_other_entry("", "regenerate", "symrot emit other --step taylor --order 2 --target c"), "to name the scene other"),
     (_smaller_truncation, "expected the bounds that symrot computes"), (_smaller_rounding, "expected"),

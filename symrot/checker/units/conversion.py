@@ -205,7 +205,7 @@ def measured_text(source: str) -> Measured | None:
     if plain is None:
         return None
     if match := _TEMPERATURE.search(plain):
-        raise InputError(f"expected units of mechanics, got {match[1]!r}; write a temperature in K")
+        raise InputError(f"expected a temperature in K, got one in {match[1]!r}")
     names = {name for match in _MEASURED.finditer(plain) for name, _ in _pieces(match[3])}
     usual = frozenset({"Hz"} & names if names & ANGULAR else ())
     main = _read(plain, _Interpretation(usual))

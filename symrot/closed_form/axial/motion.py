@@ -63,9 +63,9 @@ class AxialMotion:
         """
         if quaternion and not self.has_attitude:
             raise InputError(
-                "quaternion: expected False, got True, but the angular velocity is not parallel to the driven axis, so "
-                "this closed form has no attitude; use symrot.closed_form.spin_up.motion, or numerical integration if "
-                "there is damping"
+                "quaternion: expected False, got True: this closed form has no attitude, because the angular velocity "
+                "is not parallel to the driven axis; use symrot.closed_form.spin_up.motion, or numerical integration "
+                "if there is damping"
             )
         times = times_of(t)
         if self._loops is None:

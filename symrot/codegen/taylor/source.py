@@ -75,8 +75,8 @@ def checked_system(program: Program, edges: Sequence[int], scales: Sequence[floa
     count = len(system.states)
     if [*edges[:1], *edges[-1:]] != [0, count] or list(edges) != sorted(set(edges)) or len(scales) != len(edges) - 1:
         raise InputError(
-            f"blocks: expected increasing edges from 0 to {count}, the number of states, and one scale per block, got "
-            f"edges {list(edges)} and scales {list(scales)}"
+            f"blocks: expected block edges that increase from 0 to {count} (the number of states), and one scale per "
+            f"block, got edges {list(edges)} and scales {list(scales)}"
         )
     return system
 

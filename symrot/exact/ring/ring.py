@@ -413,7 +413,9 @@ class FormulaRing:
             base = self.exponent_bases[atom]
             generator, multiple = Ratio(self.ring.gens[self.exponentials[atom]]), coefficient / base
             if multiple.denominator != 1:
-                raise AssertionError(f"expected a whole multiple of {base}*{atom} in an exponent, got {coefficient}")
+                raise AssertionError(
+                    f"expected a whole multiple of {base}*{atom} in an exponent, got {coefficient}*{atom}"
+                )
             factors.append(self._power(generator, int(multiple), self.generators[self.exponentials[atom]]))
         return self.ratios.multiply(factors)
 

@@ -155,7 +155,9 @@ class _Interpreter(Cursor):
         inner = self.barred(self.sum, "|")
         square = inner.dot(inner) if isinstance(inner, MatrixBase) and 1 in inner.shape else None
         if square is None:
-            raise Unread("expected a vector between the bars of a length, got an absolute value or a determinant")
+            raise Unread(
+                "expected a vector v in |v|, where the bars mean its length, got an absolute value or a determinant"
+            )
         script = self.script("^")
         if script is None:
             return sqrt(square)

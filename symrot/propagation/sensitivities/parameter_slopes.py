@@ -104,8 +104,8 @@ class ParameterSlopes:
                 moved = {name: constants[name] + step * slope for name, slope in changes.items()}
                 if value_of(formula, {**constants, **moved}) != value:
                     raise InputError(
-                        f"sensitivities: expected {column.variable.name} with a value at which the equations have a "
-                        f"derivative, but {label} has a kink or a jump there; change the value slightly"
+                        f"sensitivities: expected a value of {column.variable.name} at which the equations of motion "
+                        f"have a derivative, but {label} has a kink or a jump there; change the value slightly"
                     )
 
 

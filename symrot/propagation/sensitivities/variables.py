@@ -252,8 +252,9 @@ def slopes(values: Callable[[Fraction], Numbers], step: Fraction, name: str) -> 
         slope = differences.slope(each)
         if slope is None:
             raise InputError(
-                f"sensitivities: expected {name} with a value at which the equations have a derivative, but their "
-                f"constant {each} has a kink or a jump there; change the value slightly"
+                f"sensitivities: expected a value of {name} at which the equations of motion have a derivative, but "
+                f"{each}, a constant in them that depends on {name}, has a kink or a jump there; change the value "
+                "slightly"
             )
         result[each] = slope
     return result

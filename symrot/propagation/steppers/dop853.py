@@ -98,8 +98,8 @@ def translation_unit(
     edges = list(blocks)
     if edges[:1] != [0] or edges[-1] != states or edges != sorted(set(edges)) or len(scales) != len(edges) - 1:
         raise InputError(
-            f"blocks: expected increasing edges from 0 to {states}, the number of states, and one scale per block, got "
-            f"edges {edges} and scales {list(scales)}"
+            f"blocks: expected block edges that increase from 0 to {states} (the number of states), and one scale per "
+            f"block, got edges {edges} and scales {list(scales)}"
         )
     bounds = c_text("propagation/enclosures/enclosure.h")
     return "\n".join(

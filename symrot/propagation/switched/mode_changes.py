@@ -106,7 +106,7 @@ class ModeChanges(Guards):
         return IntegrationStopped(
             self.t,
             f"the motion slides along the jump of {self._names_of_held()}, but from this time on nearby motions lead "
-            "away from it: its continuation is not unique; end the motion here",
+            "away from it: its continuation is not unique; end the motion at this time",
             self.end,
         )
 
@@ -141,8 +141,8 @@ class ModeChanges(Guards):
         if len(self.order) > MOST_AT_ONCE or (slides and self._state(hold=mode) in self.visited):
             raise IntegrationStopped(
                 self.t,
-                f"the torque contradicts itself: with every value that {self._name(mode)} can have here, it switches "
-                "at once to another value; change the torque, or end the motion here",
+                f"the torque contradicts itself: whatever value {self._name(mode)} takes at this time, the resulting "
+                "torque makes it switch to another value at once; change the torque, or end the motion at this time",
                 self.end,
             )
         if again == 0:
@@ -166,7 +166,8 @@ class ModeChanges(Guards):
                 raise IntegrationStopped(
                     self.t,
                     f"the motion would slide along a jump of {self._name(mode)}; symrot computes sliding only for "
-                    "functions of a sign, such as sign and step, not for floor and mod",
+                    "functions that jump where their argument changes sign, such as sign and step, not for floor and "
+                    "mod",
                     self.end,
                 )
         for other in asleep - self._asleep():
@@ -418,8 +419,9 @@ class ModeChanges(Guards):
                 functions = f"{self._names_of_held()} and {self._name(mode)} at once"
                 raise IntegrationStopped(
                     self.t,
-                    f"the motion would slide along the jumps of {functions}, but not in exactly one way: the value of "
-                    f"{self._name(mode)} is not determined; change the torque, or end the motion here",
+                    f"the motion would slide along the jumps of {functions}, but not in exactly one way: the "
+                    f"equations do not determine the value of {self._name(mode)}; change the torque, or end the motion "
+                    "at this time",
                     self.end,
                 )
 

@@ -41,8 +41,9 @@ def require_own(header: Header, path: Path, description: Callable[[], Mapping[st
     :func:`symrot.sweeps.layout.continued`.
     """
     # somebody may have removed the folder and begun another sweep there while this one runs
-    if continued(header, path, description).rows != header.rows:
+    rows = continued(header, path, description).rows
+    if rows != header.rows:
         raise InputError(
-            f"{path}: expected the results of this sweep in chunks of {header.rows} trajectories, got other chunks, "
-            "because the sweep was begun again; choose another name"
+            f"{path}: expected the results of this sweep in chunks of {header.rows} trajectories, got chunks of "
+            f"{rows}, because another run has begun the sweep anew at this path; choose another path"
         )

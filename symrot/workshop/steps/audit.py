@@ -99,7 +99,7 @@ def audit_step(
     except (KeyError, TypeError, ValueError, OverflowError) as reason:
         raise CertificateError(
             f"{path}: expected the entries 'files' and 'parameters' in the form that symrot prints, got a fault in "
-            f"them ({reason}); print the certificate again"
+            f"them ({reason}); emit the step again"
         ) from None
     source = texts[f"{name}.c"]
     check_source(source, name)
@@ -199,7 +199,10 @@ def _scene_name(path: Path, data: Data, method: Method) -> str:
     command = rf"symrot emit (.+) --step {method.name}{re.escape(options)} --target c"
     match = re.fullmatch(command, str(data["regenerate"]))
     if match is None:
-        raise CertificateError(f"{path}: expected 'regenerate' to be the command of the step, got another text")
+        raise CertificateError(
+            f"{path}: expected 'regenerate' to be the command that emits the step, `symrot emit SCENE --step "
+            f"{method.name}{options} --target c`, got another text"
+        )
     slopes = "; with its derivatives, row by row" if jacobian else ""
     title = rf"one time step of the scene {re.escape(repr(match[1]))} \(.*\): next is the state at t \+ dt{slopes}"
     kernel = f"{scene_kernel_name(match[1]).removesuffix('_rates')}_{method.name}_step"
@@ -252,12 +255,12 @@ def _bounds(path: Path, data: Data, method: Method, source: str, rerun: bool) ->
     except (KeyError, TypeError, ValueError, AttributeError, OverflowError) as reason:
         raise CertificateError(
             f"{path}: expected the section 'bounds' of rounding errors in the form that symrot prints, got a fault "
-            f"in it ({reason}); print the certificate again"
+            f"in it ({reason}); certify the step again"
         ) from None
     if json.dumps(own, sort_keys=True) != json.dumps(data["bounds"], sort_keys=True):
         raise CertificateError(
             f"{path}: expected the bounds that symrot computes for the ranges in the certificate, got other bounds; "
-            "print the certificate again"
+            "certify the step again"
         )
     agreement = "were computed again and agree" if rerun else "are those that symrot computes"
     return f"bounds of rounding and truncation {agreement}"

@@ -112,7 +112,7 @@ def _bounds(path: Path, step: ExactStepText, data: Data) -> Data:
             if not float.fromhex(value) / NEAR <= numbers[name] <= float.fromhex(value) * NEAR:
                 raise CertificateError(
                     f"{path}: expected the bounds that symrot computes for the ranges in the certificate, got another "
-                    f"{kind} bound of {name}; print the certificate again"
+                    f"{kind} bound of {name}; certify the step again"
                 )
     return own | {kind: {name: x.hex() for name, x in numbers.items()} for kind, numbers in stated.items()}
 

@@ -197,8 +197,9 @@ class ExactStepText(StepFiles):
         """
         if self.form.library != "free_body":
             raise InputError(
-                f"--box: expected no ranges for the step exact of {self.scene.name}, because symrot bounds no errors "
-                "of the exact step of a heavy top; take --step taylor --order 16, whose result is close"
+                f"--box: expected no ranges for the exact step of {self.scene.name}, because symrot does not bound the "
+                "errors of the exact step of a heavy top; use --step taylor --order 16 instead, whose result is close "
+                "to the exact one"
             )
         if set(box) != set(BOXED):
             ranges = " ".join(f"--box {name}=LOW:HIGH" for name in BOXED)

@@ -41,8 +41,8 @@ class StepFiles(KernelText):
         """Return the C source and its header; ``bounds`` must be None, because their comments state no error bounds."""
         if bounds:
             raise InputError(
-                f"{self.name}: expected no bounds for the C text of a time step; "
-                "`symrot certify SCENE --step METHOD --box NAME=LOW:HIGH` bounds its errors"
+                f"{self.name}: expected no bounds, because the C text of a time step states none; `symrot certify "
+                "SCENE --step METHOD --box NAME=LOW:HIGH` writes the bounds of its errors into the certificate"
             )
         return self._source_and_header
 
