@@ -51,7 +51,7 @@ def test_a_wrong_derivative_is_not_certified():
     step = step_text(SCENE, "rk4", None, ["omega"]).certified
     with pytest.raises(CertificateError, match="its derivatives by omega, got another formula"):
         step_certificate(replace(step, method=WithDerivatives(TaylorSeries(3), ("omega",))))
-    with pytest.raises(CertificateError, match="next_by_omega_2, next_by_omega_1, next_by_omega_3 of type double"):
+    with pytest.raises(CertificateError, match=r"double next_by_omega_2\[7\], double next_by_omega_1\[7\], .*, got \("):
         step_certificate(replace(step, method=WithDerivatives(RK4, ("omega_2", "omega_1", "omega_3"))))
 
 
