@@ -89,7 +89,7 @@ def measure(name: str | None = None, quick: bool = False, say: Progress = lambda
         For a scene that cannot be used, or if there is no C compiler.
     """
     if cache.missing():
-        raise InputError(f"--skip compiles the kernels that it compares, and needs a C compiler: {cache.missing()}")
+        raise InputError(f"--skip compares compiled kernels, so it needs a C compiler: {cache.missing()}")
     ladder = rungs() if name is None else {name: (load_scene(name).title, load_scene(name))}
     rows, entries = [], []
     for about, scene in ladder.values():

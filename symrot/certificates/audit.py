@@ -214,11 +214,13 @@ def _bounds(path: Path, data: Data, source: str) -> str:
     if json.dumps(section) == json.dumps(own):
         return "bounds of rounding errors equal symrot's own for this C text, on the standard ranges of the inputs"
     region = library_region(data["kernel"], source) if own is not None else None
-    if region is not None and any(json.dumps(section.get(part)) != json.dumps(value) for part, value in region.items()):
-        raise CertificateError(
-            f"{path}: expected bounds of rounding errors that assume the kernel's own restrictions of inputs, got "
-            "other restrictions"
-        )
+    for part, value in (region or {}).items():
+        if json.dumps(section.get(part)) != json.dumps(value):
+            raise CertificateError(
+                f"{path}: expected {part!r} in the section on rounding errors to be {json.dumps(value)}, which symrot "
+                f"assumes for this kernel, got {json.dumps(section.get(part))[:80]}; write the certificate again by "
+                f"`symrot emit {data['kernel']}`"
+            )
     kernels = list(operations_of(data, source).values())
     double, single = kernels[0], kernels[1] if len(kernels) > 1 else None
     check_section(section, double, single)

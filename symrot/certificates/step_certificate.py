@@ -266,9 +266,9 @@ def _require_intended(rates: Program) -> None:
             number = f"{meant.fraction}*pi" if meant.times_pi else str(meant.fraction)
             written = Decimal(node[1].numerator) / node[1].denominator
             raise InputError(
-                f"{rates.signature.name}: expected no constant that is a rounded value of another number, because "
-                f"errors are bounded, got {written}, which has the same double as {number}; write {number} or fewer "
-                "digits"
+                f"{rates.signature.name}: expected no constant that a simpler number rounds to, since the bounds would "
+                f"be proven for the simpler number, got {written}, which has the same double as {number}; write "
+                f"{number}, or {written} with fewer digits"
             )
 
 
@@ -287,7 +287,7 @@ def _with_intended_constants(rates: Program, method: Method) -> Method:
             if own is not None and own != coefficient * factor:
                 raise CertificateError(
                     f"{method.name}: expected the constant {float(value * factor)!r} in the C text to stand for "
-                    f"{factor} times the coefficient {float(value)!r}, got one that stands for {own}"
+                    f"{factor} times the coefficient {float(value)!r}, but symrot reads this constant as {own}"
                 )
         return coefficient
 
@@ -365,10 +365,14 @@ def _require_arguments(file: str, source: str, name: str, signature: Signature, 
     functions = functions_of(source, file)
     for function, expected in ((name, one), (f"{name}_batch", batch)):
         if functions[function].parameters != tuple(expected):
-            raise CertificateError(
-                f"{file}: expected {function} to have the arguments {', '.join(each.name for each in expected)} of "
-                f"type {real}, with the array sizes of a step, got others"
-            )
+            right, wrong = (", ".join(map(_declaration, each)) for each in (expected, functions[function].parameters))
+            raise CertificateError(f"{file}: expected {function} to have the arguments ({right}), got ({wrong})")
+
+
+def _declaration(parameter: Parameter) -> str:
+    """Return a parameter as C declares it, such as ``const double x[7]``."""
+    size = "" if not parameter.size else "[]" if parameter.size < 0 else f"[{parameter.size}]"
+    return f"{'const ' * parameter.is_const}{parameter.type} {parameter.name}{size}"
 
 
 def _degree(

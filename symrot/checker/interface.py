@@ -124,7 +124,9 @@ def check(
     if units is not None and not isinstance(units, Mapping):
         raise InputError(f"units: expected a mapping like {{'x': 'm'}} from names to units, got {units!r}")
     if stated and not isinstance(left, str):
-        raise InputError("where, body, frame, sequence: expected these options with a claim as text, got a SymPy value")
+        raise InputError(
+            "where, body, frame, sequence: expected these options only with a claim that is a text, got a SymPy value"
+        )
     try:
         return _checked(left, right, assume, units, repair, stated)
     except RecursionError:

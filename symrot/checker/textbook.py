@@ -184,7 +184,10 @@ def _correction(claim: Claim, verdict: Verdict, formula: PrintedFormula | None) 
     for place, source in changes.items():
         if place not in claim.editable:
             parts = ", ".join(claim.editable)
-            raise InputError(f"{claim.id}: {origin}: expected a part that may be corrected ({parts}), got {place!r}")
+            raise InputError(
+                f"{claim.id}: {origin}: expected a correction of a part that the claim's key editable allows "
+                f"({parts}), got one of {place!r}"
+            )
         trees[place] = read_expression(source, f"{claim.id}: {place}", Declared(names, claim.functions))
     if origin != "search" and decide_equation(claim.with_parts(trees).equation).verdict != "true":
         got = " and ".join(changes.values()) or "none"

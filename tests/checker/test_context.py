@@ -262,8 +262,8 @@ def test_a_prime_is_a_rate_if_its_words_say_so():
     ({"units": ["m"]}, r"units: expected a mapping like \{'x': 'm'\} from names to units, got \['m'\]"),
     ({"where": ["I = spin", "I = torque"]}, "expected one meaning of I, got 'spin' and 'torque'"),
     ({"where": ["omega = torque"]}, "expected a quantity with the unit rad/s, which omega usually has, got 'torque'"),
-    ({"where": ["T = torque"], "units": {"T": "J/s"}}, "expected a meaning of T whose unit is J/s, as stated for it"),
-    ({"where": ["T = kinetic energy of a sphere"], "body": "disk"}, "expected a solid sphere, as the words about T say"),
+    ({"where": ["T = torque"], "units": {"T": "J/s"}}, "a meaning of T whose unit is J/s, the unit stated for T"),
+    ({"where": ["T = kinetic energy of a sphere"], "body": "disk"}, "a solid sphere, which the meaning of T states"),
     ({"where": ["omega = angular velocity in space"], "frame": "body"}, "expected the space frame"),
     ({"where": "T = torque"}, "expected a list of texts"),
     ({"body": "banana"}, "body: expected a body, got 'banana'"),
@@ -296,7 +296,7 @@ def test_options_of_sympy_values_are_checked_too():
 
 
 def test_a_context_of_sympy_values_is_refused():
-    with pytest.raises(InputError, match="expected these options with a claim as text"):
+    with pytest.raises(InputError, match="expected these options only with a claim that is a text"):
         symrot.check(1, 1, body="disk")
 
 

@@ -171,7 +171,7 @@ def test_one_digit_a_last_zero_and_a_rational_value_leave_no_room_for_rounding(c
 
 def test_a_prime_after_a_number_is_no_rate():
     """90' was the rate of 90, so that 90' = 1.5° was false."""
-    with pytest.raises(symrot.InputError, match="degrees as a decimal number"):
+    with pytest.raises(symrot.InputError, match="deg for an angle, such as"):
         symrot.check("90′ = 1.5°")
 
 

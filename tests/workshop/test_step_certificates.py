@@ -144,7 +144,7 @@ def test_coefficients_of_dop853_fulfil_the_conditions_to_25_digits():
     method = step_text("tumbling_prism", "dop853").method
     assert 0 < max(require_order(method)) < order.DEFECT
     wrong = replace(method, weights=dict(method.weights) | {0: method.weights[0] + Fraction(1, 10**20)})
-    with pytest.raises(CertificateError, match="violates the order condition of a tree with 1 nodes"):
+    with pytest.raises(CertificateError, match="violates the order condition of a rooted tree with 1 node:"):
         require_order(wrong)
     text = step_text("damped_disk", "dop853")
     (first, _), *others = text._rates_program.outputs
@@ -182,7 +182,7 @@ def test_order_conditions_of_all_trees():
     """There are 1, 1, 2, 4, 9 and 20 rooted trees of 1 to 6 nodes; RK4 fulfils those up to 4 and no more."""
     assert [len(trees(size)) for size in range(1, 7)] == [1, 1, 2, 4, 9, 20]
     require_order(RK4)
-    with pytest.raises(CertificateError, match="a tree with 5 nodes"):
+    with pytest.raises(CertificateError, match="a rooted tree with 5 nodes"):
         require_order(replace(RK4, order=5))
 
 

@@ -47,7 +47,8 @@ def heyoka_code(name: str) -> tuple[Any, Any, Any]:
     states = _function(name).llvm_states
     if not _LOADED.exists():
         raise ImportError(
-            f"expected the file {_LOADED}, which names the shared library of heyoka; this system has no such file"
+            f"expected the file {_LOADED}, in which symrot looks up where the library of heyoka lies; this system "
+            "lacks the file, so heyoka cannot be measured on it"
         )
     for line in _LOADED.read_text(encoding="utf-8").splitlines():
         if "/libheyoka" in line:

@@ -59,7 +59,7 @@ class Expressions(Reader):
             return target
         mark = self._next().text
         if target.place is None:
-            raise self._fail("a variable before the assignment")
+            raise self._fail(f"a variable on the left of {mark!r}")
         value, place, kind = self._assignment(), target.place, target.type
         if mark != "=":
             return self._changed(mark[:-1], kind, place, value)
@@ -219,7 +219,7 @@ class Expressions(Reader):
     def _counted(self, value: Value, step: int, after: bool) -> Value:
         place = value.place
         if place is None:
-            raise self._fail("a variable to count")
+            raise self._fail("a variable beside ++ or --")
 
         def run(f: Frame) -> Any:
             container, index = place(f)
@@ -307,7 +307,9 @@ class Expressions(Reader):
     def _literal(self, text: str) -> Value:
         if text.isdigit():
             if text[0] == "0" and text != "0":
-                raise self._fail("a decimal number before this, not an octal one")
+                raise self._fail(
+                    f"a decimal number before the next token, instead of {text}, which C reads as an octal number"
+                )
             whole = int(text)
             return Value(INT, lambda f: whole)
         exact = Fraction(float.fromhex(text) if text[:2] in ("0x", "0X") else float(text))

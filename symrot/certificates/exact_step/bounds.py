@@ -196,7 +196,10 @@ class _Context:
             ([x for _ in range(4) for x in (Bounded(-1.0, 1.0, 0.0, 0.0), zero)], 0), None, None, (motion, 0),
         )  # fmt: skip
         if self.machine.call(f"{self.prefix}_prepare", *arguments):
-            raise InputError("expected states in the domain of the step, got others")
+            raise InputError(
+                "expected moments of inertia above 0 and |omega| up to 1e308, got values that the C text of the step "
+                "rejects"
+            )
         self.motion = motion[0]
 
     def after(self, size: Bounded) -> list[Bounded]:
@@ -345,7 +348,10 @@ def _bounds(
         scale, part = parts.pop()
         count += 1
         if count > MOST_PARTS:
-            raise InputError(f"{MIDDLE}, got ranges with such rotations; take --step taylor --order 16 for them")
+            raise InputError(
+                f"{MIDDLE}, and ranges that are narrow enough for bounds, got ranges without bounds even after a "
+                f"division into {MOST_PARTS} parts; narrow them, or take --step taylor --order 16"
+            )
         context.scale = scale
         try:
             context.prepare(list(moments), [point(a) if a == b else Bounded(a, b, 0.0, 0.0) for a, b in part])

@@ -161,7 +161,7 @@ def _circle(x: Any) -> tuple[Residue, Residue]:
 
 def _unknown(name: str) -> Callable[..., Any]:
     def refuse(*arguments: Any) -> Any:
-        raise CertificateError(f"expected an exact step without the function {name}")
+        raise CertificateError(f"expected only the functions sqrt, sin and cos in an exact step, got {name}")
 
     return refuse
 

@@ -162,8 +162,8 @@ class _EqualityProver:
             return {index}
         if node[0] not in ("add", "mul"):
             raise CertificateError(
-                f"{self.operations.name}: expected a polynomial in the branch of a conditional that replaces a "
-                "function by its series, got another formula"
+                f"{self.operations.name}: expected the series by which a conditional replaces a function "
+                "to be a polynomial, got another formula"
             )
         return {index} | self._below(node[1], leaf) | self._below(node[2], leaf)
 

@@ -141,7 +141,8 @@ def _witness(name: str, law: Law, hypothesis_names: Sequence[str], names: Sequen
         relation.subs({symbol: point[str(symbol)] for symbol in relation.free_symbols}) for relation in law.relations
     ):
         raise CertificateError(
-            f"{name}: expected hypotheses of {law.text!r} that hold for some attitude, but they do not"
+            f"{name}: expected hypotheses of {law.text!r} that hold at the point where symrot tests them (a unit "
+            "vector, a unit quaternion or a rotation matrix), got hypotheses that do not hold there"
         )
     return tuple((each, str(point[each])) for each in names)
 

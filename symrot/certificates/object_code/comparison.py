@@ -153,7 +153,9 @@ def _compare(
                     reason = reason or f"the product {split} is rounded in one place and fused in another"
                     return ObjectVerdict(function.name, DIFFERS, output, reason, cases, instructions)
                 if cases > MAX_CASES:
-                    raise NotUnderstood(f"expected at most {MAX_CASES} cases of comparisons, got more")
+                    raise NotUnderstood(
+                        f"expected at most {MAX_CASES} combinations of outcomes of comparisons, got more"
+                    )
             worst = CONTRACTED if known is not path.known else worst
     except NotUnderstood as reason:
         return ObjectVerdict(function.name, NOT_UNDERSTOOD, "", str(reason), cases, instructions)

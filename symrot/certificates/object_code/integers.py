@@ -324,7 +324,10 @@ def condition_holds(state: MachineState, condition: str) -> bool:
     if kind == "integers" and condition in OF_INTEGERS:
         zero, sign, carry, overflow = values
         return bool(OF_INTEGERS[condition](zero, sign, carry, overflow))
-    raise NotUnderstood("expected a condition on flags whose values are known, got unknown flags")
+    raise NotUnderstood(
+        f"expected processor flags that symrot has computed for the condition {condition!r}, got flags that it "
+        "does not know"
+    )
 
 
 def _set(condition: str) -> Callable[[MachineState, Instruction], None]:

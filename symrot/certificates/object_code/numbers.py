@@ -178,7 +178,9 @@ def _shifted(width: int, shift: Callable[[int, int, int], int]) -> Numeric:
             value = terms.constant(lane)
             # kernels shift only constants
             if value is None:
-                raise NotUnderstood("expected a constant as the number that a shift instruction shifts, got a variable")
+                raise NotUnderstood(
+                    "expected this instruction to shift a constant, got a number that depends on the kernel's inputs"
+                )
             results += state.halves(
                 terms.bits(width, shift(value, constant, width) if constant < width else _out(shift, value, width))
             )

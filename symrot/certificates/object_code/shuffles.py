@@ -130,7 +130,7 @@ def _insertps(state: MachineState, sources: list[Words], constant: int) -> Words
 
 def _align(_: MachineState, sources: list[Words], constant: int) -> Words:
     if constant % 4 or constant > 16:
-        raise NotUnderstood("expected a shift by whole 32-bit words, got a shift by single bytes")
+        raise NotUnderstood(f"expected a shift by 0, 4, 8, 12 or 16 bytes, got {constant} bytes")
     aligned: Words = []
     for start in range(0, len(sources[0]), 4):
         aligned += (sources[1][start : start + 4] + sources[0][start : start + 4])[constant // 4 :][:4]
@@ -140,7 +140,7 @@ def _align(_: MachineState, sources: list[Words], constant: int) -> Words:
 def _shift_bytes(left: bool) -> Shuffle:
     def shuffle(state: MachineState, sources: list[Words], constant: int) -> Words:
         if constant % 4:
-            raise NotUnderstood("expected a shift by whole 32-bit words, got a shift by single bytes")
+            raise NotUnderstood(f"expected a shift by whole 32-bit words, a multiple of 4 bytes, got {constant} bytes")
         moved, shifted = min(constant // 4, 4), list[int]()
         for start in range(0, len(sources[-1]), 4):
             words, zeros = sources[-1][start : start + 4], state.zeros(moved)

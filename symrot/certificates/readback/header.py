@@ -120,7 +120,9 @@ def check_source(source: str, name: str) -> None:
         raise CertificateError(f"{name}.c: expected #include of {name}.h, got none")
     code = " ".join(line for line in lines if "#" not in line)
     if re.search(rf"\b{guard}\b", code):
-        raise CertificateError(f"{name}.c: expected no name that the header defines, got {guard}")
+        raise CertificateError(
+            f"{name}.c: expected no use of {guard}, the include guard of {name}.h, outside comments, got one"
+        )
     calls = re.findall(r"\b(?!symrot_|for\b)[a-z]\w*\s*\((?!\s*void\b)", code)
     blocks = 1
     while blocks:  # the innermost first
@@ -129,7 +131,9 @@ def check_source(source: str, name: str) -> None:
     own = rf"void symrot_{name}f?(_batch)?\([^()]*\)|static inline (double|float) symrot_\w+\([^()]*\)"
     for head in (*heads, *[end] * bool(end)):
         if head == end or not re.fullmatch(own, head):
-            raise CertificateError(f"{name}.c: expected a function of the step, got {head[:80]!r}")
+            raise CertificateError(
+                f"{name}.c: expected only functions that belong to the step, such as symrot_{name}, got {head[:80]!r}"
+            )
     if calls and "#include <math.h>" not in source:
         raise CertificateError(f"{name}.c: expected #include <math.h> for {calls[0]}..), got none")
 

@@ -118,7 +118,7 @@ def bound_tasks(
     if strangers:
         known = ", ".join(operations.inputs)
         raise InputError(
-            f"{operations.name}: expected groups of inputs with unit norm to contain only the inputs {known}, "
+            f"{operations.name}: expected only the inputs {known} in the groups of inputs that form unit vectors, "
             f"got {strangers[0]}"
         )
     tasks_by_output = {}

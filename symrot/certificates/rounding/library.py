@@ -181,7 +181,7 @@ def largest_box(
         low, high = (middle, high) if holds(middle) else (low, middle)
     if not low:
         raise InputError(
-            f"{operations.name}: expected a target error that the bounds meet at least close to the middle of each "
-            f"range, got {target:g}; choose a larger target"
+            f"{operations.name}: expected a target error that the error bounds do not exceed at least on narrow ranges "
+            f"around the midpoints of the given ones, got {target:g}; choose a larger target"
         )
     return low, resized(box, low, chosen)

@@ -221,8 +221,8 @@ def check_bounds(
     box, region = box_of(section), region_of(section)
     if not 0 <= section["budget"] <= BUDGET:
         raise CertificateError(
-            f"expected a 'budget' of 0 to {BUDGET}, the number of parts of the ranges of inputs in which errors are "
-            f"bounded, got {section['budget']}"
+            f"expected a 'budget' of 0 to {BUDGET}, the number of boxes of inputs that the search for the error bound "
+            f"of one output may evaluate, got {section['budget']}"
         )
     for operations, part in zip((operations_double, operations_float), section["precisions"], strict=False):
         if operations is None:
@@ -242,9 +242,9 @@ def check_bounds(
                 raise CertificateError(str(reason)) from None
             if not _alike(item, recomputed):
                 raise CertificateError(
-                    f"{operations.name}: expected for {place} the error bound that symrot computes on the same ranges, "
-                    f"{recomputed['units']} units of {unit:g}, and its details, got {item['units']} units or other "
-                    "details; certify the kernel again"
+                    f"{operations.name}: expected the error bound of {place} that symrot computes on the same ranges, "
+                    f"{recomputed['units']} units of {unit:g}, got {item['units']} units, and "
+                    f"{_differing(item, recomputed)!r} differs; certify the kernel again"
                 )
 
 
@@ -269,14 +269,16 @@ def _check_precision(
         at = np.array([float.fromhex(item["at"][place]) for place in task.graph.places])
         if not isfinite(bound) or bound < 0 or item["units"] != _units(Fraction(bound) / Fraction(unit)):
             raise CertificateError(
-                f"{name}: expected a finite error bound of {item['output']}, the same in 'absolute' and in 'units' of "
-                f"{unit:g}, got {bound!r} and {item['units']}"
+                f"{name}: {item['output']}: expected 'absolute' and 'units' (multiples of {unit:g}) to state the same "
+                f"finite error bound of at least 0, got {bound!r} and {item['units']}"
             )
         choices, safe = choice_phrases(task), task.graph.contraction_safe
         if item["choices"] != choices or item["contraction_safe"] is not safe:
             raise CertificateError(
-                f"{name}: expected 'choices' and 'contraction_safe' of {item['output']} as they follow from the C text "
-                f"({choices} and {safe}), got others"
+                f"{name}: {item['output']}: expected 'choices' (the conditions that compare rounded numbers) to be "
+                f"{choices} and 'contraction_safe' (whether the bound also holds with fused multiply-adds) to be "
+                f"{safe}, as in the C text, got {item['choices']} and {item['contraction_safe']}; certify the kernel "
+                "again"
             )
         if at.size and not ((task.box[0] <= at) & (at <= task.box[1])).all():
             raise CertificateError(

@@ -85,6 +85,6 @@ def _defect(tree: Tree, method: RungeKutta, most: Fraction) -> Fraction:
         got = total if not method.rounded else f"{float(total)!r}, by {float(defect):.1e},"
         raise CertificateError(
             f"{method.name}: expected a method of order {method.order}, got one that violates the order condition "
-            f"of a tree with {_size(tree)} nodes: {got} instead of 1/{_density(tree)}"
+            f"of a rooted tree with {_size(tree)} node{'s' * (_size(tree) > 1)}: {got} instead of 1/{_density(tree)}"
         )
     return defect

@@ -114,7 +114,9 @@ def _value(primitive: Expr, variable: Symbol, limit: Expr) -> Expr:
     terms = Add.make_args(value.xreplace(waves).expand())
     imaginary = [term for term in terms if term.has(I)]
     if any((term / I).has(I) for term in imaginary):
-        raise InputError("expected an integral whose real part is known")
+        raise InputError(
+            f"integrate takes no product of an exponential and a sine or cosine that both depend on {variable}"
+        )
     return Add(*terms) - Add(*imaginary)
 
 

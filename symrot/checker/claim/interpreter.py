@@ -218,7 +218,7 @@ def _index(interpreter: Interpreter, node: Node) -> Expr:
     if len(places) != 2 or not all(
         place.is_Integer and 0 <= place < size for place, size in zip(places, matrix.shape, strict=True)
     ):
-        raise interpreter.fail(node, f"indices from 0 into {described(matrix)}")
+        raise interpreter.fail(node, f"indices, counted from 0, of an entry of {described(matrix)}")
     return matrix[int(places[0]), int(places[1])]
 
 

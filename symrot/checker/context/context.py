@@ -179,8 +179,8 @@ class Context:
                 continue
             if name in explicit and read_unit(explicit[name], name) != read_unit(meaning.quantity.unit):
                 raise InputError(
-                    f"where: expected a meaning of {meaning.written[0]} whose unit is {explicit[name]}, as stated for "
-                    f"it, got {meaning.quantity.title!r}, whose unit is {meaning.quantity.unit}"
+                    f"where: expected a meaning of {meaning.written[0]} whose unit is {explicit[name]}, the unit "
+                    f"stated for {name}, got {meaning.quantity.title!r}, whose unit is {meaning.quantity.unit}"
                 )
             units[name] = meaning.quantity.unit
         return units

@@ -100,7 +100,8 @@ def _meaning(text: str, prefix: str) -> Meaning:
     words = words.strip(" =")
     if "=" in words:
         raise InputError(
-            f"{prefix}expected the meaning of one name in a text, got {text[:60]!r}; write one text for each"
+            f"{prefix}expected one meaning in each text, like 'I = moment of inertia', got {text[:60]!r}; write one "
+            "text for each meaning"
         )
     frame, rest = _frame_in(plain_words(words))
     quantity, phrase = _quantity(rest, words, prefix)
@@ -280,21 +281,22 @@ def _check_consistency(context: Context, prefix: str) -> None:
                     f"got {other.quantity.title!r} and {meaning.quantity.title!r}"
                 )
         if meaning.quantity.sign not in ("", context.sign_of_products):
+            first = next(meaning for meaning in context.meanings if meaning.quantity.sign)
             raise InputError(
                 f"{prefix}where: expected all products of inertia with the same sign convention, got "
-                f"{meaning.written[0]} as the {meaning.quantity.title}, and another product of inertia with the "
-                f"{context.sign_of_products} sign"
+                f"{first.written[0]} as the {first.quantity.title}, and {meaning.written[0]} as the "
+                f"{meaning.quantity.title}"
             )
         _check_unit(meaning, prefix)
         if meaning.frame and context.frame and meaning.frame != context.frame:
             raise InputError(
-                f"{prefix}frame: expected the {meaning.frame} frame, as the words about {meaning.written[0]} say, "
+                f"{prefix}frame: expected the {meaning.frame} frame, which the meaning of {meaning.written[0]} states, "
                 f"got {context.frame!r}"
             )
         if meaning.body and context.body and meaning.body.kind != context.body.kind:
             raise InputError(
-                f"{prefix}body: expected a {meaning.body.kind.title}, as the words about {meaning.written[0]} say, "
-                f"got {context.body.kind.title!r}"
+                f"{prefix}body: expected a {meaning.body.kind.title}, which the meaning of {meaning.written[0]} "
+                f"states, got {context.body.kind.title!r}"
             )
 
 

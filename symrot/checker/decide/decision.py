@@ -276,7 +276,9 @@ def _decide_large(equation: Equation, lefts: Sequence[Expr], rights: Sequence[Ex
     InputError
         If it can neither be proven with letters in place of the powers, nor refuted at a point.
     """
-    refusal = InputError(f"expected a formula of degree up to {LARGEST_DEGREE} in symbols and sines, got about {size}")
+    refusal = InputError(
+        f"expected a formula of degree up to {LARGEST_DEGREE} in symbols and sines, got a degree of about {size}"
+    )
     if equation.hypotheses or len(lefts) > 1:
         raise refusal
     proof = _with_shorter_powers(equation, lefts, rights)

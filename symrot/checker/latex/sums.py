@@ -381,7 +381,7 @@ class SumsPart(Cursor):
         pair = commutator(first, self.expression(), sign)
         if pair is None:
             raise self.fail(
-                "a closing bracket (write a commutator as A B - B A, unless A and B have Pauli matrices)", comma
+                "a closing bracket (write a commutator as A B - B A, unless A and B contain Pauli matrices)", comma
             )
         return pair
 

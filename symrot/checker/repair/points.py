@@ -147,7 +147,9 @@ class Point:
         name = inner.value
         key = (name, order)
         if self.weight > HEAVIEST:
-            raise UndefinedValue("expected fewer derivatives of derivatives, such as diff(diff(f, x), y)")
+            raise UndefinedValue(
+                "expected fewer derivatives inside each other, as diff(f, x) is in diff(diff(f, x), y), got too many"
+            )
         if key not in self.lifted:
             in_time = name == "t" and not order
             if not in_time and name not in self.symbols and name not in self.functions:

@@ -226,7 +226,7 @@ class Parser(PiecesPart):
         if not digits:
             return base
         if not re.fullmatch(r"[+-]?\d+", digits, re.ASCII):
-            raise self.fail("a whole number as a raised exponent", token.start)
+            raise self.fail("a whole number as a superscript exponent", token.start)
         return Node("power", None, (base, number(int(digits))), self.span(start))
 
     def caret(self, base: Node, start: int) -> Node:

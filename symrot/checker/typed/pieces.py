@@ -183,14 +183,17 @@ class PiecesPart(OpenFunctionsPart):
         if order > MOST_DOTS:
             raise self.fail(f"a time derivative of order at most {MOST_DOTS}", mark.start)
         if node.kind == "number":
-            raise self.fail("degrees as a decimal number, or ft or in for a length, in place of a prime", mark.start)
+            raise self.fail(
+                "a unit instead of a prime after a number (deg for an angle, such as 0.5 deg; ft or in for a length)",
+                mark.start,
+            )
         if node.kind == "name":
             name = str(node.value)
             doubtful = mark.kind == "prime" and name not in self.vocabulary.functions
             if doubtful and self.other_reading("prime", start, start, mark.end):
                 return Node("name", name + "_prime" * order, (), self.span(start))
             if name in ("t", "pi"):
-                raise self.fail(f"a quantity that may depend on t before the prime or dot, instead of {name}", start)
+                raise self.fail(f"a prime or dot only after a quantity that can depend on t, not after {name}", start)
             if name not in self.vocabulary.functions and name in self.vocabulary.symbols:
                 raise self.fail(f"{name} to be declared as a function of t (in the claim's list of functions)", start)
             if [self.token(n).text for n in range(3)] == ["(", "t", ")"]:
@@ -366,7 +369,7 @@ class PiecesPart(OpenFunctionsPart):
             mass = over_mass(inner)
             if mass is None:
                 raise self.fail(
-                    f"limits of the integral, dm, or a density before {element} for an integral over a body"
+                    f"limits of the integral or, for an integral over a body, either dm or a density before {element}"
                 )
             self.note(f"the density times {element} is read as dm")
             inner = mass
@@ -380,7 +383,7 @@ class PiecesPart(OpenFunctionsPart):
             if upper.text == "T":  # ∫₀ᵀ
                 return lower, Node("name", "T", (), (upper.start, upper.end))
             if not re.fullmatch(r"[+-]?\d+", upper.text, re.ASCII):
-                raise self.fail("a whole number or T as a raised limit", upper.start)
+                raise self.fail("a whole number or the name T as the superscript upper limit", upper.start)
             return lower, number(int(upper.text))
         self.expect("^")
         return lower, self.limit()

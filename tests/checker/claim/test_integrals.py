@@ -17,12 +17,12 @@ def test_an_integral_is_read_as_printed(text, verdict):
 
 
 def test_a_raised_limit_is_a_whole_number_or_a_time():
-    with pytest.raises(InputError, match="a whole number or T as a raised limit"):
+    with pytest.raises(InputError, match="a whole number or the name T as the superscript upper limit"):
         symrot.check("∫₀⁺ x dx = 1")
 
 
 def test_an_integral_over_a_volume_needs_a_density():
-    with pytest.raises(InputError, match="a density before dV for an integral over a body"):
+    with pytest.raises(InputError, match="for an integral over a body, either dm or a density before dV"):
         symrot.check("I_zz = ∫(x² + y²) dV")
 
 

@@ -131,7 +131,7 @@ REFUSED = (
     ("∂x = 1", "write diff"), ("Σx = 0", "write the terms"), ("y = ¹/₀", "a divisor that is not zero at position 5"),
     ("x.applyfunc(f) == 1", "T, the transpose, or another of"), ("x.__class__ == 1", "position 3"), ("x.y == 1", "position 3"),
     ("x.free_symbols == 1", "position 3"), ("open(x + y) == 1", "'open'"), ("(x + = 1", "a number, a name"),
-    ("x² + (y = 1", r"'\)'"), ("x = 1 < 2", "a chain of equals signs"), ("|x = 1", r"'\|'"), ("t' = 1", "may depend on t"),
+    ("x² + (y = 1", r"'\)'"), ("x = 1 < 2", "a chain of equals signs"), ("|x = 1", r"'\|'"), ("t' = 1", "can depend on t"),
     ("[1, 2; 3] = x", "equal length"), ("[a b; c d] = x", "commas between the entries"),
     ("2e3x = 1", "a product sign after the number"), ("x\n= 1\ny", "'=='"),
     ("a × b × c = 0", "which of the products"), ("xⁿ = 1", "position 2"), ("x²⁻ = 1", "a whole number"), ("м = 1", "position 1"),

@@ -117,8 +117,9 @@ def _claim(entry: dict[str, Any], number: int, label: str) -> Claim:
     declared = [*symbols, *functions]
     if twice := [name for name in known if declared.count(name) > 1]:
         raise InputError(f"{place}: expected every symbol and function to be declared once, got {min(twice)!r} twice")
-    if len(known) + len(entry.get("define", ())) > MOST_NAMES:
-        raise InputError(f"{place}: expected at most {MOST_NAMES} names in a claim, got {len(known)} and more")
+    count = len(known) + len(entry.get("define", ()))
+    if count > MOST_NAMES:
+        raise InputError(f"{place}: expected at most {MOST_NAMES} names in a claim, got {count}")
     for place_of, (defined, formula) in enumerate(entry.get("define", ())):
         _check_name(defined, "define", place)
         if defined in known:

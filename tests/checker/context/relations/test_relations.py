@@ -97,7 +97,8 @@ def test_a_product_without_the_minus_sign_is_called_that():
 
 def test_both_signs_of_products_in_one_context_are_refused():
     with pytest.raises(
-        symrot.InputError, match="expected all products of inertia with the same sign convention, got I_xz"
+        symrot.InputError,
+        match=r"expected all products of inertia with the same sign convention, got I_xy as .* and I_xz",
     ):
         symrot.check("L_x = I_xy omega_y + I_xz omega_z", where=["I_xy = ∫ xy dm", "I_xz = -∫ xz dm"])
 
