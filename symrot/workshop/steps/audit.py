@@ -109,7 +109,9 @@ def audit_step(
     named = _scene_name(path, data, method)
     for section, own in (("step", step_section(method)), ("rates", rates_section(rates, values))):
         if data[section] != own:
-            raise CertificateError(f"{path}: expected {section!r} in the form that symrot prints, got another")
+            raise CertificateError(
+                f"{path}: expected {section!r} in the form that symrot prints, got another; emit the step again"
+            )
     progress("proving ..")
     if formula_section(name, rates, method, source) != data["formula"]:
         raise CertificateError(

@@ -42,7 +42,7 @@ class StepFiles(KernelText):
         if bounds:
             raise InputError(
                 f"{self.name}: expected no bounds, because the C text of a time step states none; `symrot certify "
-                "SCENE --step METHOD --box NAME=LOW:HIGH` writes the bounds of its errors into the certificate"
+                "SCENE --step METHOD --box NAME=LOW:HIGH` computes the bounds of its errors"
             )
         return self._source_and_header
 
