@@ -136,7 +136,7 @@ def numbers(what: str, values: Sequence[Number], length: int, least: float = -LA
         if not abs(value) <= LARGEST:
             raise InputError(f"{what}: expected finite numbers of a magnitude up to {LARGEST:g}, got {show(value)}")
         if value < least:
-            raise InputError(f"{what}: expected each number to be {least:g} or more, got {show(value)}")
+            raise InputError(f"{what}: expected positive numbers, each {least:g} or more, got {show(value)}")
     return entries
 
 
