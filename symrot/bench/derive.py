@@ -33,7 +33,7 @@ ROWS: tuple[tuple[str, Callable[[], int]], ...] = (
 
 
 def main() -> int:
-    """Print the processor time of deriving Euler sequences and solids."""
+    """Print the processor time of deriving all Euler rate Jacobians and the inertia tensors of all solids."""
     import sympy
 
     print(f"SymPy {sympy.__version__}")

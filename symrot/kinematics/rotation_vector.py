@@ -64,7 +64,10 @@ def _half_sine(size: Expr) -> Expr:
 
 
 def _jacobian_function(frame: str) -> Callable[[Expr], Expr]:
-    """Return the function f of the rate matrix ``B = f(K)``, K the skew matrix of the rotation vector."""
+    """Return the function f with ``omega = f(K) dv/dt``, where K is the skew matrix of the rotation vector v.
+
+    ``frame``, "body" or "space", is the frame of the components of omega.
+    """
     # The mean over s in [0, 1] of exp(-s K) (body) or exp(s K) (space). For the body, f(z) = (1 - exp(-z)) / z: a
     # rotation by half the angle, times a scale factor.
     sign = {"body": -1, "space": 1}[check_frame(frame)]

@@ -349,8 +349,9 @@ def _bounds(
         count += 1
         if count > MOST_PARTS:
             raise InputError(
-                f"{MIDDLE}, and ranges that are narrow enough for bounds, got ranges without bounds even after a "
-                f"division into {MOST_PARTS} parts; narrow them, or take --step taylor --order 16"
+                f"{MIDDLE}, and ranges on which symrot can bound the errors of the step, got ranges on which it finds "
+                f"no bounds even after it divides them into {MOST_PARTS} parts; write narrower ranges, or take "
+                "--step taylor --order 16"
             )
         context.scale = scale
         try:

@@ -24,6 +24,8 @@ __all__ = [
     "write",
 ]
 
+SINGLE_BYTES = "expected an instruction on registers of 4 or 8 bytes, got one on single bytes whose value is not known"
+
 OF_NUMBERS: dict[str, Outcomes] = {
     name: frozenset(outcomes)
     for names, outcomes in (
@@ -179,7 +181,7 @@ def _byte_test(state: MachineState, instruction: Instruction, name: str) -> None
     """Execute a test of one byte, such as ``test al, al``; the value of the byte must be known."""
     target, source = instruction.operands
     if name not in ("test", "or", "and") or target != source or not isinstance(target, Register):
-        raise NotUnderstood("expected operands of 4 or 8 bytes, got single bytes")
+        raise NotUnderstood(SINGLE_BYTES)
     value = _known_byte(state, target.name)
     state.flags = ("integers", (int(value == 0), value >> 7, 0, 0))
 
@@ -188,7 +190,7 @@ def _known_byte(state: MachineState, name: str) -> int:
     whole, size = GENERAL.get(name, ("", 0))
     low = state.context.terms.lowest_byte(state.general[whole][0]) if size == 1 else None
     if low is None:
-        raise NotUnderstood("expected operands of 4 or 8 bytes, got single bytes")
+        raise NotUnderstood(SINGLE_BYTES)
     return low
 
 
@@ -334,7 +336,7 @@ def _set(condition: str) -> Callable[[MachineState, Instruction], None]:
     def set_byte(state: MachineState, instruction: Instruction) -> None:
         (target,) = operands_of(instruction, 1)
         if not isinstance(target, Register) or GENERAL.get(target.name, ("", 0))[1] != 1:
-            raise NotUnderstood("expected operands of 4 or 8 bytes, got single bytes")
+            raise NotUnderstood(SINGLE_BYTES)
         whole, terms = GENERAL[target.name][0], state.context.terms
         low = terms.constant(state.general[whole][0])
         is_set = condition_holds(state, condition)
@@ -349,7 +351,7 @@ def _set(condition: str) -> Callable[[MachineState, Instruction], None]:
 def _movzx(state: MachineState, instruction: Instruction) -> None:
     target, source = operands_of(instruction, 2)
     if not isinstance(source, Register) or not isinstance(target, Register):
-        raise NotUnderstood("expected operands of 4 or 8 bytes, got single bytes")
+        raise NotUnderstood(SINGLE_BYTES)
     byte = _known_byte(state, source.name)
     state.set_register(target.name, read(state, instruction, Constant(byte), GENERAL[target.name][1]))
 

@@ -90,7 +90,7 @@ def _box(path: Path, data: Data) -> dict[str, tuple[Fraction, Fraction]]:
         return {name: (Fraction(low), Fraction(high)) for name, (low, high) in ends.items()}
     except (AttributeError, KeyError, OverflowError, TypeError, ValueError) as reason:
         raise CertificateError(
-            f"{path}: expected 'box' in 'bounds' as symrot prints it, got a fault ({reason})"
+            f"{path}: expected under 'bounds' the ranges 'box' as symrot writes them, got other content ({reason})"
         ) from None
 
 
@@ -126,7 +126,7 @@ def _numbers(path: Path, bounds: Data, kind: str) -> dict[str, float]:
         return {name: float.fromhex(bounds[kind][name]) for name in STATE_NAMES}
     except (KeyError, TypeError, ValueError, OverflowError) as reason:
         raise CertificateError(
-            f"{path}: expected {kind!r} in 'bounds' as symrot prints it, got a fault ({reason})"
+            f"{path}: expected under 'bounds' the numbers {kind!r} as symrot writes them, got other content ({reason})"
         ) from None
 
 

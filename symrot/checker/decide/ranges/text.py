@@ -57,8 +57,7 @@ def condition_texts(conditions: Iterable[Any]) -> tuple[str, ...]:
 
 
 _EMPTY_RANGE = re.compile(r"^(.+) < (\w+) < \1$")
-"""Pattern of a range that contains no number, such as ``0 < x < 0``: two conditions, ``x < 0 and x > 0``, are easier
-to read."""
+"""Pattern of a range that contains no number, such as ``0 < x < 0``, which is written ``x < 0 and x > 0`` instead."""
 
 
 def positive_symbols(conditions: Iterable[Any]) -> dict[Expr, Expr]:

@@ -48,10 +48,10 @@ def _without_mark(name: str) -> tuple[str, str]:
 
 
 def _numbered_angle(known: str, mine: str, other: str) -> str:
-    """Return a claim's name for the Euler angle ``known``, as the claim calls another Euler angle, ``mine``, ``other``.
+    """Return the name that a claim with numbered angles has for the Euler angle ``known``.
 
-    For ``known`` = psi, a claim that calls phi (``mine``) theta_1 (``other``) calls psi theta_3. Return "" if ``other``
-    does not end with the number of the angle ``mine``, counted from the first or from the last angle.
+    The claim has the name ``other`` for another Euler angle, ``mine``: where phi is theta_1, psi is theta_3. Return ""
+    if ``other`` does not end with the number of the angle ``mine``, counted from the first or from the last angle.
 
     Examples
     --------
