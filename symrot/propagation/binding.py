@@ -79,8 +79,8 @@ class Binding:
     def __call__(self, plan: Plan) -> list[float]:
         """Return the values of the parameters, in order, for the initial state of ``plan``.
 
-        In all else, ``plan`` must agree with the plan given to the constructor. Each parameter has as many doubles as
-        the constructor's argument ``rounded`` returns: one by default, two for output quantities.
+        In all else, ``plan`` must agree with the plan given to the constructor. The constructor's argument ``rounded``
+        turns a value into doubles: one double by default, or two whose sum is more exact.
         """
         numbers = self._numbers.copy()
         if self._moving:

@@ -217,8 +217,8 @@ class _EqualityProver:
                     ):
                         return self.fractions.generator(atom)
         raise CertificateError(
-            f"{self.operations.name}: expected only conditionals that the formula contains too, got a conditional with "
-            f"the relation {relation!r}"
+            f"{self.operations.name}: expected each conditional in the C text to be in the stated formula too, got one "
+            f"with the relation {relation!r}"
         )
 
     def _is_limit_or_formula(

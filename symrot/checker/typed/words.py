@@ -61,7 +61,8 @@ _WITH_INDICES = re.compile(r"([A-Za-z]_[0-9]){2,}", re.ASCII)
 """Pattern of a product of letters with indices, such as ``a_1b_2``."""
 
 BEFORE_INDEX = USUAL_LETTERS | {"E", "T"}
-"""The letters that may stand in a word before a letter with an index: E and I_1 in ``EI_1``."""
+"""The letters that may stand directly before a letter with an index, as a factor: E in ``EI_1``, read as E times I_1.
+"""
 
 UNITS = ("rpm", "deg", "rad", "kg", "mm", "cm", "km", "Hz", "ms", "rev", "min")
 

@@ -33,11 +33,11 @@ def beside(guards: Guards, interval: Interval, signs: Mapping[str, int]) -> Inte
 
 
 def hold_at_rest(guards: Guards, interval: Interval) -> None:
-    """Change the equations of an interval so that they keep guards at zero that stay at zero in the interval.
+    """Change the equations of an interval so that arguments that stay at zero in the interval are kept at zero.
 
-    A guard is the argument of a function (sign, abs, ..). Where the equations cannot keep the guard at zero, the name
-    of the function's mode, the number that replaces the function in formulas, is appended to ``interval.resting``. A
-    guard is left alone if the rates and their derivatives are the same on both sides of its zero.
+    The arguments (guards) are those of functions such as sign and abs. If an argument stays at zero, but the equations
+    cannot force it to, the name of the function's mode, the number that replaces the function in formulas, is appended
+    to ``interval.resting``. An argument is left alone if the rates and their derivatives are the same on both sides of its zero.
     """
     resting = [mode for mode in interval.regime.formulas if mode not in interval.held and rests(guards, interval, mode)]
     for mode in resting:

@@ -135,8 +135,8 @@ class ParquetStore:
     def finish(self, tables: list[Table], only_statistics: str) -> None:
         """Store the statistics ``tables`` at the end of a sweep.
 
-        Raise InputError if ``only_statistics`` is not empty, since values cannot be removed from these files, or if
-        the folder no longer holds this sweep.
+        Raise InputError if ``only_statistics`` is not empty: it then asks to keep statistics alone, but the values of
+        trajectories cannot be removed from Parquet files. Raise it also if the folder no longer holds this sweep.
         """
         require_own(self.header, self.path, self._description)
         if tables:
