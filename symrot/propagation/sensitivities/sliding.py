@@ -37,7 +37,8 @@ def hold_at_rest(guards: Guards, interval: Interval) -> None:
 
     The arguments (guards) are those of functions such as sign and abs. If an argument stays at zero, but the equations
     cannot force it to, the name of the function's mode, the number that replaces the function in formulas, is appended
-    to ``interval.resting``. An argument is left alone if the rates and their derivatives are the same on both sides of its zero.
+    to ``interval.resting``. An argument is left alone if the rates and their derivatives are the same on both sides of
+    its zero.
     """
     resting = [mode for mode in interval.regime.formulas if mode not in interval.held and rests(guards, interval, mode)]
     for mode in resting:

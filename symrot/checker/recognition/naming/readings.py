@@ -42,7 +42,8 @@ mean, or for an unedited claim whose quantity has a name without usual meaning.
 LEAST_SYMBOLS_OF_MOTION = 3
 """The smallest number of symbols in an equation of motion that is compared with known relations.
 
-For instance, ``L*theta'' = -g*sin(theta)`` has three. An equation counts as an equation of motion if it has the second time derivative of an angle, and a sine or cosine of the same angle.
+For instance, ``L*theta'' = -g*sin(theta)`` has three. An equation counts as an equation of motion if it has the second
+time derivative of an angle, and a sine or cosine of the same angle.
 """
 
 MOST_TERMS = 5000
