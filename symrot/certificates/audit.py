@@ -22,7 +22,7 @@ from symrot.certificates.readback.readback import read_batch, read_kernel
 from symrot.certificates.rounding.bounds_text import library_region, library_section
 from symrot.certificates.rounding.section import check_bounds, check_section
 from symrot.errors import CertificateError, InputError
-from symrot.files.reading import read_input
+from symrot.files.reading import read_input, repeated_name
 from symrot.kernels.library import is_kernel
 from symrot.kernels.removable import REMOVABLE
 
@@ -83,11 +83,10 @@ def load_certificate(path: Path) -> Data:
 
 
 def _unique(pairs: list[tuple[str, Any]]) -> Data:
-    data = dict(pairs)
-    if len(data) != len(pairs):
-        twice = next(name for number, (name, _) in enumerate(pairs) if name in dict(pairs[:number]))
+    twice = repeated_name(pairs)
+    if twice is not None:
         raise ValueError(f"expected each name at most once in a JSON object, got {twice!r} twice")
-    return data
+    return dict(pairs)
 
 
 def _refused(text: str) -> Any:

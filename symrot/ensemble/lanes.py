@@ -50,7 +50,6 @@ REASONS = {
     NOT_FINITE: "its derivatives are not finite there",
     UNDERFLOW: "the step shrank to nothing, as it does before a singularity",
     TOO_MANY: "{steps} steps were not enough",
-    HOPELESS_PACE: "",  # see why_hopeless
 }
 ORDERS = (
     (3e-2, 10),
@@ -126,7 +125,7 @@ class Outcome(NamedTuple):
     steps: Integers
     evaluations: Integers
     messages: tuple[str, ...]  # the reason why a motion stopped early, or an empty text
-    warnings: tuple[tuple[str, ...], ...] = ()  # of each motion; empty if no motion has any
+    warnings: tuple[tuple[str, ...], ...]  # sentences about the accuracy of each motion
 
 
 class Lanes:
@@ -270,7 +269,7 @@ class LaneIntegration:
             sorted_grid, grid = grid, np.empty_like(grid)
             np.put_along_axis(grid, np.broadcast_to(legs.order, grid.shape[:2])[..., None], sorted_grid, axis=1)
         messages = self._messages(status[0], measured[0], measured[3]) if status.any() else ("",) * n
-        return Outcome(grid, counted[0], counted[1], messages)
+        return Outcome(grid, counted[0], counted[1], messages, ((),) * n)
 
     def _messages(self, status: Integers, reached: Floats, covered: Floats) -> tuple[str, ...]:
         """Return, for each motion, the reason why it stopped early, or an empty text."""
@@ -280,9 +279,10 @@ class LaneIntegration:
         messages = [""] * len(self.y)
         for leg in np.flatnonzero(status != DONE).tolist():
             stop, last = float(self.legs.table[first[leg] + samples[leg] - 1]), float(reached[leg])
-            reason = REASONS[int(status[leg])].format(steps=self.max_steps)
             if status[leg] == HOPELESS_PACE:
                 reason = why_hopeless(PATIENCE, float(covered[leg]), abs(stop - last), self.max_steps)
+            else:
+                reason = REASONS[int(status[leg])].format(steps=self.max_steps)
             if status[leg] == UNDERFLOW:
                 reason = why_stuck(reason, last, self.t0, stop)
             messages[motion[leg]] = str(IntegrationStopped(last, reason, stop).later(self.epoch))

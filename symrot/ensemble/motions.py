@@ -157,9 +157,7 @@ def _follow(problem: Problem, method: str, rows: Integers) -> Followed:
         outcome = STEPPERS[chosen.partition(":")[0]](stepper, chosen)
         stepper.read(outcome.states, omega, quaternion)
         for place, i in enumerate(stepped):
-            methods[i], messages[i] = chosen, outcome.messages[place]
-        for i, own in zip(stepped, outcome.warnings):  # noqa: B905 - empty if no motion has a warning
-            warnings[i] = own
+            methods[i], messages[i], warnings[i] = chosen, outcome.messages[place], outcome.warnings[place]
         steps[stepped], evaluations[stepped] = outcome.steps, outcome.evaluations
     return Followed(omega, quaternion, tuple(methods), tuple(messages), tuple(warnings), steps, evaluations)
 
@@ -380,7 +378,7 @@ def _scipy(stepped: _Stepped, method: str) -> lanes.Outcome:
 def _constant(stepped: _Stepped, method: str) -> lanes.Outcome:
     count = len(stepped.chosen)
     nothing = np.zeros(count, dtype=np.int64)
-    return lanes.Outcome(np.empty((count, stepped.times.shape[-1], 0)), nothing, nothing, ("",) * count)
+    return lanes.Outcome(np.empty((count, stepped.times.shape[-1], 0)), nothing, nothing, ("",) * count, ((),) * count)
 
 
 STEPPERS: dict[str, Callable[[_Stepped, str], lanes.Outcome]] = {

@@ -1,14 +1,18 @@
 """Reading of files of unknown origin: only regular files up to a size limit, so that no pipe or device blocks.
 
-symrot opens all scenes, claim files, tables, certificates, studies, robot files and meshes here. Standard library only.
+symrot opens all scenes, claim files, tables, certificates, studies, robot files and meshes here. Imports only the
+standard library and :mod:`symrot.errors`.
 """
 
 import os
 import stat
+from collections.abc import Iterable
 from errno import EFBIG, EINVAL
 from pathlib import Path
 
-__all__ = ["read_input", "refuse_special"]
+from symrot.errors import InputError
+
+__all__ = ["read_input", "refuse_special", "repeated_name", "utf8_text"]
 
 SPECIAL = (
     (stat.S_ISDIR, "a folder"),
@@ -65,3 +69,25 @@ def read_input(path: Path, largest: int) -> bytes:
     if not rest:
         raise OSError(EFBIG, "a larger one")
     return b"".join(parts)
+
+
+def utf8_text(content: bytes, label: object) -> str:
+    """Return the content of a file, which ``label`` names, as text without a byte order mark.
+
+    Raise InputError with the first byte that is no UTF-8 text.
+    """
+    try:
+        return content.decode("utf-8-sig")
+    except UnicodeDecodeError as reason:
+        byte = content[reason.start]
+        raise InputError(f"{label}: expected UTF-8 text, got byte 0x{byte:02x} at position {reason.start}") from None
+
+
+def repeated_name(pairs: Iterable[tuple[str, object]]) -> str | None:
+    """Return the first name that occurs twice in the (name, value) pairs of a JSON object; None if all names differ."""
+    names = set[str]()
+    for name, _ in pairs:
+        if name in names:
+            return name
+        names.add(name)
+    return None

@@ -7,7 +7,7 @@ from typing import Any
 
 from symrot.dynamics.torque_kinds import TABLE_KIND
 from symrot.errors import InputError, nearest
-from symrot.files.reading import read_input
+from symrot.files.reading import read_input, utf8_text
 from symrot.formula.switches import has_switches
 from symrot.formula.tree import parse
 
@@ -99,11 +99,7 @@ def read_toml(path: Path, label: str, what: str = "scene") -> dict[str, Any]:
     except OSError as reason:
         expectation = f"a readable {what} file of at most {LARGEST_FILE // 1_000_000} MB"
         raise InputError(f"{label}: expected {expectation}, got {reason.strerror or reason}") from None
-    try:
-        text = content.decode("utf-8-sig")
-    except UnicodeDecodeError as reason:
-        raise InputError(f"{label}: expected UTF-8 text, got byte 0x{content[reason.start]:02x} at position "
-                         f"{reason.start}") from None  # fmt: skip
+    text = utf8_text(content, label)
     if not text.strip():
         raise InputError(f"{label}: expected a {what}, got an empty file")
     return _parse(text, label)

@@ -416,18 +416,21 @@ def _content(scene: Scene) -> Content | None:
 
 
 def _result(store: Store, path: Path | None, warnings: tuple[str, ...]) -> Sweep:
-    stopped, impossible, reasons, warned = 0, 0, list[tuple[int, str]](), list[tuple[int, str]]()
+    stopped, impossible, warned, example = 0, 0, 0, ""
+    reasons = list[tuple[int, str]]()
     count = store.header.count
     for start in range(0, count, BLOCK):
-        status: NDArray[Any] = store.read(STATUS, start, min(start + BLOCK, count))
+        stop = min(start + BLOCK, count)
+        status: NDArray[Any] = store.read(STATUS, start, stop)
+        messages: NDArray[Any] = store.read(MESSAGE, start, stop)
         stopped, impossible = stopped + int((status == STOPPED).sum()), impossible + int((status == IMPOSSIBLE).sum())
         for row in np.flatnonzero(status)[: SHOWN_REASONS - len(reasons)].tolist():
-            reasons.append((start + row, str(store.read(MESSAGE, start + row, start + row + 1)[0])))
-        messages = store.read(MESSAGE, start, min(start + BLOCK, count))
-        with_text = np.flatnonzero((messages != "") & (status == COMPLETE)).tolist()
-        warned += [(start + row, str(messages[row])) for row in with_text]
+            reasons.append((start + row, str(messages[row])))
+        doubtful = np.flatnonzero((messages != "") & (status == COMPLETE))
+        if len(doubtful) and not example:
+            first = int(doubtful[0])
+            example = f"trajectory {start + first}: {str(messages[first]).removeprefix(WARNED)}"
+        warned += len(doubtful)
     if warned:
-        row, text = warned[0]
-        doubt = f"{len(warned)} of {count} trajectories have a warning, for example trajectory {row}: "
-        warnings = (*warnings, doubt + text.removeprefix(WARNED))
+        warnings = (*warnings, f"{warned} of {count} trajectories have a warning, for example {example}")
     return Sweep(path, count, stopped, impossible, reasons, store, warnings)

@@ -146,3 +146,12 @@ def test_a_file_name_that_no_folder_can_hold_is_refused(tmp_path):
     path.write_text(certificate_json(data), encoding="utf-8")
     with pytest.raises(CertificateError):
         symrot.audit(path)
+
+
+def test_a_name_that_many_others_precede_is_refused_at_once(tmp_path):
+    """The search for the repeated name went through all earlier names for each name, for minutes."""
+    names = [f'"n{k}": 0' for k in range(200_000)]
+    path = tmp_path / "long.cert.json"
+    path.write_text("{" + ", ".join([*names, names[-1]]) + "}")
+    with pytest.raises(CertificateError, match="expected each name at most once in a JSON object, got 'n199999' twice"):
+        load_certificate(path)

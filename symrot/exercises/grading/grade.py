@@ -2,7 +2,6 @@
 
 import json
 import re
-from collections import Counter
 from collections.abc import Callable, Iterator, Mapping, Sequence
 from pathlib import Path
 from typing import Any
@@ -13,6 +12,7 @@ from symrot.exercises.grading.formulas import mark_formula
 from symrot.exercises.grading.mark import Grades, Mark
 from symrot.exercises.grading.numbers import mark_number
 from symrot.exercises.sheet import ExerciseSheet, read_sheet
+from symrot.files.reading import repeated_name, utf8_text
 
 __all__ = ["grade", "grade_files"]
 
@@ -106,13 +106,7 @@ def grade_files(exercises: str | Path, answers: str | Path) -> Grades:
 
 
 def _text(path: str | Path) -> str:
-    content = Path(path).read_bytes()
-    try:
-        return content.decode("utf-8-sig")
-    except UnicodeDecodeError as reason:
-        raise InputError(
-            f"{path}: expected UTF-8 text, got byte 0x{content[reason.start]:02x} at position {reason.start}"
-        ) from None
+    return utf8_text(Path(path).read_bytes(), path)
 
 
 def _answers(path: str | Path, text: str) -> dict[str, str]:
@@ -137,11 +131,10 @@ def _answers(path: str | Path, text: str) -> dict[str, str]:
 
 def _json(path: str | Path, text: str) -> Any:
     def without_repetition(pairs: list[tuple[str, Any]]) -> dict[str, Any]:
-        unique = dict(pairs)
-        if len(unique) < len(pairs):
-            twice = Counter(name for name, _ in pairs).most_common(1)[0][0]
+        twice = repeated_name(pairs)
+        if twice is not None:
             raise InputError(f"{path}: expected each name once, got {twice[:60]!r} more than once")
-        return unique
+        return dict(pairs)
 
     try:
         return json.loads(text, object_pairs_hook=without_repetition)
