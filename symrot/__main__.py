@@ -9,8 +9,11 @@ def main() -> int:
     Ctrl-C ends the program without a traceback, even while modules are still being imported.
     """
     try:
-        from symrot.cli.interrupt import end_quietly, repeat_lost_interrupts
-
+        from symrot.cli.interrupt import end_quietly, is_interrupt, note_interrupts, repeat_lost_interrupts
+    except KeyboardInterrupt:
+        return 130
+    try:
+        note_interrupts()
         repeat_lost_interrupts()
         from symrot.cli import main as cli
 
@@ -18,8 +21,10 @@ def main() -> int:
         if code == 130:
             end_quietly()
         return code
-    except KeyboardInterrupt:
-        return 130
+    except BaseException as error:
+        if is_interrupt(error):
+            return 130
+        raise
 
 
 if __name__ == "__main__":

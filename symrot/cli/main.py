@@ -12,6 +12,7 @@ from typing import Any, TextIO
 
 import symrot
 from symrot.cli import certify, claims, derive, emit, exchange, exercises, machine, motions, sweeps
+from symrot.cli.interrupt import is_interrupt
 from symrot.cli.output import INTERRUPTED, SIGPIPE, USAGE_ERROR, Command, progress
 from symrot.cli.parser import Parser
 from symrot.errors import InputError, SymrotError, with_hint
@@ -137,7 +138,9 @@ def main(argv: Sequence[str] | None = None) -> int:
         place = f"{one_line(str(error.filename))}: " if error.filename else ""
         sys.stderr.write(f"symrot: {place}{error.strerror or error}\n")
         return USAGE_ERROR
-    except KeyboardInterrupt:
+    except BaseException as error:
+        if not is_interrupt(error):
+            raise
         _stop_compilers()
         progress("")
         return INTERRUPTED

@@ -1,5 +1,6 @@
 """Ctrl-C ends every command at once with exit code 130, without a traceback, and leaves no process running."""
 
+import contextlib
 import os
 import random
 import signal
@@ -105,6 +106,35 @@ def test_an_import_that_is_interrupted_ends_quietly(monkeypatch, capsys):
 
     monkeypatch.setattr(cli, "main", interrupt)
     assert __main__.main() == 130 and capsys.readouterr() == ("", "")
+
+
+@pytest.mark.parametrize("place", ["import", "command"])
+def test_an_interrupt_that_a_library_replaces_by_its_own_error_ends_quietly(place, monkeypatch, capsys):
+    """As NumPy does it, whose C code imports a module of Python: the KeyboardInterrupt leaves no trace."""
+    from symrot import __main__
+    from symrot.cli import main as cli
+
+    def library(*_):
+        with contextlib.suppress(KeyboardInterrupt):
+            signal.raise_signal(signal.SIGINT)
+        raise ImportError("could not import module")
+
+    monkeypatch.setattr(cli, "main" if place == "import" else "_check_command", library)
+    monkeypatch.setattr(cli.sys, "argv", ["symrot", "run"])
+    assert __main__.main() == 130 and capsys.readouterr() == ("", "")
+
+
+def test_an_error_without_an_interrupt_is_raised(monkeypatch):
+    from symrot import __main__
+    from symrot.cli import main as cli
+
+    def library(*_):
+        raise ImportError("could not import module")
+
+    monkeypatch.setattr(cli, "_check_command", library)
+    monkeypatch.setattr(cli.sys, "argv", ["symrot", "run"])
+    with pytest.raises(ImportError):
+        __main__.main()
 
 
 @pytest.mark.parametrize("to_group", [True, pytest.param(False, marks=pytest.mark.campaign)], ids=["group", "alone"])
