@@ -469,16 +469,19 @@ def evaluate(
 
 
 def _forward_pass(state: _ErrorPass, computed: _ErrorPass, node: Node) -> Array | None:
-    """Append a node's intervals to ``state.values`` and ``computed.values``; return a bound of its error, or None."""
-    # Contains the exact and the computed value. In a graph without branches, ``computed`` is the same object as
-    # ``state``.
+    """Append intervals of a node's value to ``state.values`` and ``computed.values``; return a bound of its error.
+
+    The interval in ``state.values`` contains the exact value and the computed, rounded value. The interval in
+    ``computed.values`` contains the computed value and may be narrower. In a graph without branches, ``computed`` is
+    the same object as ``state``. The bound is None for an operation without rounding error.
+    """
     value, error = FORWARD[node[0]](state, node, [state.values[i] for i in operand_places(node)])
     state.values.append(value)
     if state.centred is not None:
         state.centred.close(node, operand_places(node), error)
     if computed is not state:
-        # Contains only the computed value, and may be narrower: a box assumes the branches that computed values take,
-        # and exact values close to a border may lie on its other side.
+        # narrower: a box assumes the branches that computed values take, and exact values close to a border may lie on
+        # its other side
         computed_value, error = FORWARD[node[0]](computed, node, [computed.values[i] for i in operand_places(node)])
         both = np.stack([np.maximum(value[0], computed_value[0]), np.minimum(value[1], computed_value[1])])
         computed.values.append(np.where(both[0] <= both[1], both, value))
