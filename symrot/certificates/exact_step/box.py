@@ -95,9 +95,7 @@ def halves(part: Part) -> tuple[Part, Part]:
     middle = (low + high) / 2
     if not low < middle < high:
         omega = ", ".join(f"{low:g}" for low, _ in part)
-        raise InputError(
-            f"{MIDDLE}, got ranges that contain omega = ({omega}), where symrot finds no bound of the step's errors"
-        )
+        raise InputError(f"{MIDDLE}, got omega near ({omega}), where symrot finds no bound of the step's errors")
     return tuple((low, middle) if i == place else each for i, each in enumerate(part)), tuple(
         (middle, high) if i == place else each for i, each in enumerate(part)
     )
