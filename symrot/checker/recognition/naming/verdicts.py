@@ -56,8 +56,8 @@ ENDS = {acos: (S.Zero, pi), asin: (-pi / 2, pi / 2), atan2: (-pi, pi)}
 def verdict_on_name(claim: Claim, named: NamedFormula, repair: bool) -> Verdict:
     """Return the verdict on a claim that only gives a formula for a named quantity.
 
-    With ``repair``, also look for a fault whose correction makes the formula a known one; the verdict then is
-    "doubtful", as it never is without ``repair``.
+    With ``repair``, also look for a fault whose correction makes the formula a known one. If there is one, the verdict
+    is "doubtful", which is given only with ``repair``.
 
     Raises
     ------
