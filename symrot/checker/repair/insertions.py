@@ -41,7 +41,10 @@ MOST_LETTERS = 240
 """The largest number of characters in a term that a repair may add to a side of a claim."""
 
 MOST_TERMS_READ, MOST_ROOTS_READ = 1000, 12
-"""Largest numbers of terms and of roots in left side minus right side; a longer difference is not a missing term."""
+"""Largest numbers of terms and of roots in left side minus right side for the search for a missing term.
+
+The missing term is computed from this difference. If the difference is longer, no missing term is looked for.
+"""
 
 
 def missing_terms(numeric: NumericFilter) -> Iterator[Candidate]:
