@@ -61,8 +61,8 @@ def _proven_statement(data: Data, own: SceneSource | None = None) -> Data | None
         text = kernel_text(load_scene(own), jacobian[1].split(",") if jacobian else ())
         if text.name != data["kernel"]:
             raise CertificateError(
-                f"{data['kernel']}: expected the certificate of {text.name}, which is the kernel that symrot emits for the "
-                f"scene {load_scene(own).name}, got that of another kernel"
+                f"{data['kernel']}: expected the certificate of {text.name}, which is the kernel that symrot emits for "
+                f"the scene {load_scene(own).name}, got that of another kernel"
             )
         return proven_statement(text.under_test(data.get("rounding")))
     name = data["kernel"]
