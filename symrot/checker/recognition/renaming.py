@@ -64,7 +64,11 @@ def is_consistent(renaming: Sequence[tuple[str, str]], fixed: bool = False) -> b
 
 @cache
 def _pair_of_quantities(known: str, new: str) -> tuple[str, str]:
-    """Return (phi, psi) for ``dphi`` and ``diff(psi(t), t)``; the given names if ``new`` is no rate and no ``x(t)``."""
+    """Return the quantities of which both names are rates: (phi, psi) for ``dphi`` and ``diff(psi(t), t)``.
+
+    A function of time counts as its quantity: ``psi(t)`` as psi. If ``new`` is neither a rate nor a function of time,
+    return both names as they are.
+    """
     quantity = quantity_of(new)
     return (quantity_of(known), quantity) if quantity != new else (known, new)
 

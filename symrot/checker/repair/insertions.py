@@ -165,10 +165,11 @@ def exchanged_definitions(numeric: NumericFilter) -> Iterator[Candidate]:
 
 
 def _term(residual: Any, piece: Node | None) -> Node | None:
-    """Return ``residual``, the difference of the claim's sides, as the tree of one short term; None if it is longer.
+    """Return ``residual``, the difference of the claim's sides, as the tree of one short term.
 
-    None also if it has no letters, or letters in a denominator. ``piece`` is the formula to which the term is to be
-    added. A term with a sum in brackets may be at most half as long as this formula, unless the formula is 0.
+    Return None if it is not one term or too long, and if it has no letters, or letters in a denominator. ``piece`` is
+    the formula to which the term is to be added. A term with a sum in brackets may be at most half as long as this
+    formula, unless the formula is 0.
     """
     above, below = residual.as_numer_denom()
     if not below.is_number or not residual.free_symbols:

@@ -1,4 +1,4 @@
-"""Which names in a text are vectors: the signs beside them show it, such as those of cross products, hats and lengths.
+"""Which names in a text are vectors: signs show it, such as a hat, a cross product, or the bars of a length.
 
 An argument ``flips`` has the keys (kind, position) of the ambiguous signs and words of the text that are read in their
 less usual meaning.

@@ -1,8 +1,8 @@
 """Verdicts on claims such as ``I_zz == m/12*(a**2 + b**2)``, which only give a formula for a named quantity.
 
-Nothing in such a claim defines the left side; so the right side is compared with known formulas: those that symrot
-derives. The verdict is "recognised" if the right side equals a known formula, "doubtful" if it does after a single
-edit, and "definition" otherwise. The readings of a claim are the known formulas that it can mean.
+Nothing in such a claim defines the left side; so the right side is compared with known formulas, which symrot derives.
+The verdict is "recognised" if the right side equals a known formula, "doubtful" if it does after a single edit, and
+"definition" otherwise. The readings of a claim are the known formulas that it can mean.
 """
 
 import re
