@@ -419,7 +419,7 @@ def _less_trust(data):
     (_faster_rates, "expected next|its rate"), (_coupled_rates, "omega_3 by the length dt of the step to be its rate"),
     (_other_states, "in the form|exact step, got those of omega_4|as symrot prints"),
     (_other_axis, "got another formula"), (_no_axis, "symmetry axis"),
-    (_other_chance, "to be the proof"), (_less_trust, "the section 'trusted'"),
+    (_other_chance, "the proof that symrot derives from the C text"), (_less_trust, "the section 'trusted'"),
 ])  # fmt: skip
 def test_forged_certificates_are_refused(certified, tmp_path, change, message):
     source, certificate = certified
