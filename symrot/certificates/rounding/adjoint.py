@@ -195,7 +195,9 @@ def _sign(state: _ErrorPass, node: Node, operands: Sequence[Array]) -> tuple[Arr
     if node[0] == "abs":
         return size, None
     b = operands[1]
-    either = np.stack([-size[1], size[1]])
+    # The sign of a computed zero says nothing: 0.0*(-1.0) is -0.0. The sign of an input is exact.
+    largest = size[1] if state.graph.exact[node[2]] else np.full_like(size[1], inf)
+    either = np.stack([-largest, largest])
     return np.where(b[0] > 0, size, np.where(b[1] < 0, intervals.negative(size), either)), None
 
 
@@ -212,6 +214,9 @@ def _angle(state: _ErrorPass, node: Node, operands: Sequence[Array]) -> tuple[Ar
         state.outside |= length[1] < state.region.clearance**2
     state.cuts[len(state.values)] = intervals.contains_zero(y) & (x[0] < 0)
     value, error = state.rounded(np.clip(functions.arc_tangent(y, x), -pi, pi), 2 * state.libm_ulp)
+    if not state.region.clearance:  # the angle of (0, 0) is not defined, and C computes 0 or pi by the sign of a zero
+        undefined = intervals.contains_zero(y) & intervals.contains_zero(x)
+        value = np.where(undefined, np.array([[-inf], [inf]]), value)
     return value, error
 
 
