@@ -154,12 +154,28 @@ def _follow(problem: Problem, method: str, rows: Integers) -> Followed:
     elif stepped:
         chosen = method if method != "auto" else _stepping_method(problem)
         stepper = _Stepped(problem, stepped)
-        outcome = STEPPERS[chosen.partition(":")[0]](stepper, chosen)
+        outcome, again = STEPPERS[chosen.partition(":")[0]](stepper, chosen), list[int]()
+        if method == "auto" and chosen == "taylor" and non_smooth_torque(problem.plan):
+            again = [place for place, message in enumerate(outcome.messages) if message]
+        if again:
+            outcome = _replaced(outcome, again, _dop853(_Stepped(problem, [stepped[place] for place in again]), ""))
         stepper.read(outcome.states, omega, quaternion)
         for place, i in enumerate(stepped):
             methods[i], messages[i], warnings[i] = chosen, outcome.messages[place], outcome.warnings[place]
+        for place in again:
+            methods[stepped[place]] = "dop853"
         steps[stepped], evaluations[stepped] = outcome.steps, outcome.evaluations
     return Followed(omega, quaternion, tuple(methods), tuple(messages), tuple(warnings), steps, evaluations)
+
+
+def _replaced(outcome: lanes.Outcome, places: Sequence[int], other: lanes.Outcome) -> lanes.Outcome:
+    """Return an outcome in which the results of the motions ``places`` are those of ``other``, in the same order."""
+    messages, warnings = list(outcome.messages), list(outcome.warnings)
+    for k, place in enumerate(places):
+        messages[place], warnings[place] = other.messages[k], other.warnings[k]
+        outcome.states[place] = other.states[k]
+        outcome.steps[place], outcome.evaluations[place] = other.steps[k], other.evaluations[k]
+    return outcome._replace(messages=tuple(messages), warnings=tuple(warnings))
 
 
 def _switched(
@@ -209,9 +225,8 @@ def _stepping_method(problem: Problem) -> str:
         return "constant"  # nothing changes
     if library.missing():
         return "scipy"
-    rough = has_formulas(problem.plan) and non_smooth_torque(
-        problem.plan
-    )  # lanes can step drag, which has a kink at rest
+    # lanes can step drag, which has a kink at rest; the motions that reach it are stepped again by dop853
+    rough = has_formulas(problem.plan) and non_smooth_torque(problem.plan)
     return "dop853" if rough or taylor.refusal(scene_kernel(problem.plan).rates) else "taylor"
 
 
