@@ -315,8 +315,11 @@ class _Stepped:
             needed |= names(node) if name in needed else set()
         return tuple([(name, node) for name, node in parameters if name in needed])
 
-    def one_by_one(self, integrate: Callable[[int, Floats], tuple[Floats, Stats]]) -> lanes.Outcome:
-        """Integrate all trajectories one after the other; ``integrate(k, times)`` returns states and cost of one."""
+    def one_by_one(self, method: str, integrate: Callable[[int, Floats], tuple[Floats, Stats]]) -> lanes.Outcome:
+        """Integrate all trajectories one after the other; ``integrate(k, times)`` returns states and cost of one.
+
+        ``method`` is the name of the method, for warnings.
+        """
         samples = self.times.shape[-1]
         states = np.full((len(self.chosen), samples, len(self.plan.states)), np.nan)
         steps, evaluations = (np.zeros(len(self.chosen), dtype=np.int64) for _ in range(2))
@@ -335,7 +338,8 @@ class _Stepped:
             warnings.append(())
             if stats is not None:
                 steps[k], evaluations[k] = stats.accepted, stats.evaluations
-                warnings[k] = tuple(map(rounding_warning, stats.later(self.epoch).rounded_beyond))
+                beyond = stats.later(self.epoch).rounded_beyond
+                warnings[k] = tuple([rounding_warning(t, method) for t in beyond])
         return lanes.Outcome(states, steps, evaluations, tuple(messages), tuple(warnings))
 
 
@@ -359,7 +363,7 @@ def _one_by_one(stepped: _Stepped) -> lanes.Outcome:
     def integrate(k: int, times: Floats) -> tuple[Floats, Any]:
         return taylor.integration(path, stepped.p[k], stepped.y[k], stepped.t0, problem.tolerance).sample(times)
 
-    return stepped.one_by_one(integrate)
+    return stepped.one_by_one("taylor", integrate)
 
 
 def _dop853(stepped: _Stepped, method: str) -> lanes.Outcome:
@@ -370,7 +374,7 @@ def _dop853(stepped: _Stepped, method: str) -> lanes.Outcome:
         arguments = path, stepped.p[k], stepped.y[k], stepped.t0, problem.tolerance
         return dop853.integration(*arguments, clock=stepped.clock(k)).sample(times)
 
-    return stepped.one_by_one(integrate)
+    return stepped.one_by_one("dop853", integrate)
 
 
 def _scipy(stepped: _Stepped, method: str) -> lanes.Outcome:
@@ -388,7 +392,7 @@ def _scipy(stepped: _Stepped, method: str) -> lanes.Outcome:
         options = fallback.Options(method, blocks, scales, deviations=deviations, clock=clock)
         return fallback.integrate(*start, times, problem.tolerance, options)
 
-    return stepped.one_by_one(integrate)
+    return stepped.one_by_one(method, integrate)
 
 
 def _constant(stepped: _Stepped, method: str) -> lanes.Outcome:
