@@ -50,9 +50,12 @@ class Crossings:
     Parameters
     ----------
     guards : Guards
-        The guards and rates.
+        Computes the arguments of the switching functions (sign, abs, ..), the rates of the states, and the derivatives
+        of both.
     changes : mapping
-        For each pair (time in s, function): the way in which the function switches then, such as ``"passed"``.
+        For each pair (time in s, function as the user wrote it): how the argument of the function behaves then. It is
+        ``"passed"`` if the argument passes zero, ``"held"`` if it stays there from then on, and ``"released"`` if it
+        leaves zero, where it was held.
     length : float
         The length of the motion, s.
 
@@ -110,8 +113,12 @@ class Crossings:
                 )
             rows[mode] = np.full(len(by.T), np.nan) if grazes else 0.0 - guard.change(by) / speed
         if not jumps and float(np.abs(later - f).max()) > STEEP * float(np.abs([f, later]).max()):
-            names_of = " and ".join(map(guards.name, [*changed, *sorted(held), *released]))
-            raise guards.refusal(before.end, f"the torque jumps although no argument of {names_of} is zero")
+            names_of = " or ".join(map(guards.name, [*changed, *sorted(held), *released]))
+            raise guards.refusal(
+                before.end,
+                f"the torque jumps there, but not because the argument of {names_of} becomes zero: the derivatives of "
+                "the time of such a jump cannot be computed",
+            )
         first = next(iter(jumps), None)
         if first is not None:
             flips = {mode: Flip(after.modes[mode], rows[mode], jumps[mode].states) for mode in jumps}
@@ -134,10 +141,10 @@ class Crossings:
 
         The functions (sign, ..) switch at the end of ``interval``. Return None if the change can be computed as for one
         function: if only one function switches, or if the times of all switches have the same derivatives by the
-        variables, the initial values and constants by which the motion is differentiated.
+        variables. The variables are the initial values and constants by which the motion is differentiated.
 
-        Raise PropagationError if the order of the switches may matter: of these, and of those that were earlier by no
-        more than rounding errors.
+        Raise PropagationError if the states after the switches may depend on the order of the switches. Switches that
+        were earlier by no more than rounding errors are included.
 
         Parameters
         ----------
@@ -146,7 +153,8 @@ class Crossings:
         flips : mapping
             A function's mode (name of the number that replaces the function in formulas) -> the switch of the function.
         alone : bool
-            Whether no function other than those in ``flips`` switches, and no argument is held at zero from then on.
+            Whether no function other than those in ``flips`` switches, and no argument of a function is held at zero
+            from then on.
         """
         earlier, end = self._last, interval.end
         self._last = interval, end, flips, alone
@@ -171,7 +179,9 @@ class Crossings:
             groups.append([mode]) if group is None else group.append(mode)
         if len(groups) == 1:
             return None
-        refusal = guards.refusal(interval.end, f"{' and '.join(map(guards.name, flips))} switch at the same time")
+        functions = " and ".join(map(guards.name, flips))
+        reason = "a small change of a variable separates the switches, and their order may then matter"
+        refusal = guards.refusal(interval.end, f"{functions} switch at the same time: {reason}")
         if not alone or len(groups) > MOST_AT_ONCE:
             raise refusal
         corners = {}
@@ -196,9 +206,9 @@ class Crossings:
     def _append_switches(self, instant: Instant, rows: Mapping[str, Floats], others: Floats | None) -> None:
         """Append the switches at an instant to :attr:`switchings`, with the m derivatives of their time.
 
-        ``rows`` is a map from the mode of a switching function (name of the number that replaces it in formulas) to
-        its m derivatives. ``others`` are the derivatives for every function that is not in ``rows``; None stands for
-        NaN.
+        ``rows`` is a map from a switching function to the m derivatives of the time at which the function switches. The
+        function is named by its mode, the number that replaces the function in formulas. ``others`` are the derivatives
+        for every function that is not in ``rows``; None stands for NaN.
         """
         unknown = np.full(len(self.guards.parameter_slopes.columns), np.nan)
         for (t, label), how in self._changes.items():
