@@ -141,8 +141,9 @@ def clock(
 ) -> Callable[[float], tuple[Any, list[float]]]:
     """Return a function from an epoch, s after ``start``, to the rates and the values of their parameters.
 
-    In the rates, t is the time since the epoch. A stepper calls the function at a late time to set its clock to 0
-    there. The rates are the same for every epoch and are made on first use; only the values of the parameters differ.
+    In the rates, t is the time since the epoch. At a late time, a stepper begins to count its time from a new epoch and
+    calls this function. The rates are the same for every epoch and are made on first use; only the values of the
+    parameters differ.
 
     Parameters
     ----------
