@@ -48,8 +48,9 @@ __all__ = [
 Limit = OutOfOperations | TimeUp
 
 MOST_SECONDS = 60
-"""The limit on the processor time for one claim, in seconds. It is a last resort: MOST_OPERATIONS, the limit that
-normally ends a check, take some ten seconds; but operations inside SymPy are not counted."""
+"""The limit on the processor time for one claim, in seconds. Normally a check ends earlier, after MOST_OPERATIONS
+operations, which take about ten seconds. This limit ends a check that spends its time inside SymPy, whose operations
+are not counted."""
 FOR_ALL_VALUES = (
     "== claims that both sides are equal for all values; to state a relation between the letters, write one ="
 )
