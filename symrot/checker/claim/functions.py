@@ -179,9 +179,7 @@ def _determinant(scope: Scope, matrix: ImmutableMatrix, node: Node, most_product
 
 
 def _smaller_determinant(most: int, products: int) -> str:
-    """Return words for an error message about a matrix whose determinant has ``products`` products, more than
-    ``most``.
-    """
+    """Return words for an error message: a determinant expands to ``products`` products, more than ``most``."""
     return f"a smaller matrix (its determinant expands to {products} products of entries, symrot takes at most {most})"
 
 

@@ -72,7 +72,7 @@ class ClaimCase(Case):
 
     @property
     def lacks_evidence(self) -> bool:
-        """Whether no counterexample is known, and the search for one must go on."""
+        """Whether the search for a counterexample must go on."""
         # known conditions on the signs of roots end the search; under hypotheses it goes on, since they ignore these
         return self.counterexample is None and (bool(self.ring.hypotheses) or self.branches is None)
 
@@ -145,9 +145,11 @@ def domain_of_text(case: ClaimCase) -> None:
 
 
 def nearby_witness(case: ClaimCase) -> None:
-    """Search rational points and a few points that obey the hypotheses for a counterexample; store it in ``case``.
+    """Search for a counterexample among simple points, and store it in ``case``.
 
-    Without hypotheses, points in closed form, such as pi/6, take the place of the latter. Set ``case.numerators`` too.
+    The search tries rational points, then a few points that obey the hypotheses. For a claim without hypotheses, it
+    tries rational points, then points in closed form, such as pi/6. The numerators of the unproven entries are stored
+    in ``case.numerators``.
     """
     ring, hypotheses = case.ring, case.hypotheses
     case.numerators = [ring.reduce(case.residuals[place].numerator) for place in case.unproven]

@@ -244,11 +244,11 @@ def _with_entries(matrices: Sequence[tuple[str, Node]], relation: Relation) -> I
 def _with_vectors(
     relation: Relation, vectors: list[Vector], define: Sequence[tuple[str, Node]]
 ) -> tuple[Relation, list[Vector], bool]:
-    """Return a relation with ``eye(n)`` for the unit matrix I or 1, a list of vectors, and whether the relation was
-    changed.
+    """Return (relation, vectors, changed): a relation with ``eye(n)`` for the unit matrix I or 1, and its vectors.
 
-    The list has ``vectors`` and the undefined names that the relation uses as vectors or inertia tensors, such as b in
-    ``cross(a, b)``. ``define`` are the definitions of the claim.
+    The list of vectors has ``vectors`` and the undefined names that the relation uses as vectors or inertia tensors,
+    such as b in ``cross(a, b)``. ``define`` are the definitions of the claim. "changed" says whether there was a unit
+    matrix.
     """
     # defined names are no new vectors
     named = {name for name, _ in define} | {vector.name for vector in vectors}
