@@ -197,7 +197,7 @@ def assignments_of(
     for chosen in islice(_distinct(choices), MOST_CHOICES):
         pairs = [(symbol.name, as_text(atom)) for symbol, atom in zip(chosen, atoms, strict=True)]
         free = [pair for pair in pairs if pair[0] not in pinned]
-        if not is_consistent([*free, *component(known.name, quantity)], known.is_placed):
+        if not is_consistent([*free, *component(known.name, quantity)], known.has_fixed_axes):
             continue
         letters = [as_text(atom) for atom in atoms]
         unpinned = {old: new for old, new in free if old != new}
