@@ -374,8 +374,9 @@ def _diagnosed(claim: Claim, decision: Decision, verdict: Verdict) -> Verdict:
 
 
 def _domain(claim: Claim) -> Diagnosis:
-    """Return the diagnosis "domain" for a true claim with only one side defined everywhere, ``x == x**2/x``; else
-    "none".
+    """Return the diagnosis "domain" for a true claim with only one side defined everywhere, such as ``x == x**2/x``.
+
+    Return the diagnosis "none" for all other true claims.
     """
     assert claim.relation is not None
     sides = [claim.with_relation(("==", side, side)) for side in claim.relation[1:]]

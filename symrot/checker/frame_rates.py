@@ -35,8 +35,8 @@ ROTATING = {"B", "b", "body", "rot", "rotating", "r"}
 """Names of a rotating frame, as written at a derivative: B in ``(dA/dt)_B``."""
 
 MARKED = "moving"
-"""Name that symrot gives to the frame of ``d'A/dt``, and of A with a ring above: these derivatives are those in a
-rotating frame, but do not name it."""
+"""Name that symrot gives to the frame of ``d'A/dt``, and of A with a ring above. These derivatives are derivatives in a
+rotating frame, but do not name the frame."""
 
 TEXT = r"\{?\\(?:mathrm|text|textrm|mathcal|textit|rm)\s*\{?\s*(?P<{0}t>\w+'?)\s*\}*"
 LABEL = r"(?:_\s*(?:\{\s*(?P<{0}b>\w+'?)\s*\}|" + TEXT + r"|(?P<{0}w>\w)(?!\w)))"
@@ -63,7 +63,8 @@ LATEX = tuple(re.compile(pattern) for pattern in (
     r"\\d?frac\s*\{\s*" + D + r"\}\s*" + DT + r"\s*" + VECTOR,
     r"\\dot\s*\{\s*" + VECTOR + r"\s*\}",
 ))  # fmt: skip
-"""Patterns of the time derivative of a vector in LaTeX: first those that show the frame, then those that do not."""
+"""Patterns of the time derivative of a vector in LaTeX: first the patterns with a mark for the frame, then those
+without."""
 
 PLAIN = tuple(re.compile(pattern) for pattern in (
     r"\(\s*d(?P<v>\w)\s*/\s*dt\s*\)\s*_\s*\{?(?P<lb>\w+'?)\}?",
@@ -72,8 +73,8 @@ PLAIN = tuple(re.compile(pattern) for pattern in (
     r"(?<![\w(])d(?P<v>\w)\s*/\s*dt(?!\w)",
     "(?P<v>\\w)\N{COMBINING DOT ABOVE}",
 ))  # fmt: skip
-"""Patterns of the time derivative of a vector in plain text: first those that show the frame, as ``(dA/dt)_B`` does,
-then those that do not, such as ``dA/dt``."""
+"""Patterns of the time derivative of a vector in plain text: first the patterns with a mark for the frame, such as
+``(dA/dt)_B``, then those without, such as ``dA/dt``."""
 
 OMEGA = r"(?P<omega>\\(?:boldsymbol|mathbf|vec|bm)\s*(?:\{\s*\\\w+\s*\}|\\\w+)|\\[oO]mega|[ωΩ])\s*"
 MARK = r"\{?\s*(?:\\(?:mathcal|mathrm|text)\s*\{?)?\s*(?P<{0}>\w+'?)\s*\}*"

@@ -264,8 +264,9 @@ def _unmarked_quaternion(sides: Sequence[Node]) -> Sequence[Node]:
 
 
 def _rotating(side: Node, other: Node) -> Node | None:
-    """Return q for a side ``q v q^-1`` if the ``other`` side is the rotated vector, written ``R v`` or ``v'``; else
-    None.
+    """Return q for a side ``q v q^-1`` if the ``other`` side is the rotated vector, written ``R v`` or ``v'``.
+
+    Return None for all other sides.
     """
     if side.kind != "product" or len(side.args) != 3:
         return None

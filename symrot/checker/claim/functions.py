@@ -265,8 +265,9 @@ def _of_blocks(scope: Scope, node: Node, rows: Any) -> ImmutableMatrix:
 
 
 def _block(cell: Any, height: int, width: int) -> ImmutableMatrix | None:
-    """Return an entry of a block matrix ``[[A, b], [0, 1]]`` as a matrix of ``height`` x ``width``; None if it does not
-    fit.
+    """Return an entry of a block matrix ``[[A, b], [0, 1]]`` as a matrix of ``height`` x ``width``.
+
+    Return None if the entry has another height or width.
     """
     # a scalar 0 stands for a zero matrix of any size
     if cell == 0 and not is_matrix(cell):

@@ -99,7 +99,7 @@ def _after(steps: Sequence[Solve], tree: Node) -> Node:
 
 
 def without_common_factors(left: Node, right: Node) -> tuple[Node, Node]:
-    """Return both sides without the letters that are factors of both sides, as m in ``m*v**2/2 == m*g*h``."""
+    """Return both sides without the letters that are factors of both sides, such as m in ``m*v**2/2 == m*g*h``."""
     factors = [list(side.args) if side.kind == "product" else [side] for side in (left, right)]
     for factor in [*factors[0]]:
         if factor in factors[1] and is_name(factor) and quantities_in(factor):

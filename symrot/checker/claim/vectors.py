@@ -206,7 +206,7 @@ def beside_directions(factors: Sequence[Node]) -> list[Node]:
 def may_be_mixed(name: str) -> bool:
     """Return whether ``name`` with a hat may be the direction of the vector that a text calls ``name`` without a hat.
 
-    False for names of axes such as x, i and e_1: with a hat they are axes, and without a hat x is a coordinate.
+    Return False for names of axes such as x, i and e_1: with a hat, x is an axis, and without a hat, a coordinate.
     """
     return name not in "xyzijk" and not name.startswith("e_")
 
@@ -242,7 +242,7 @@ def gyroscopic_tensors(sides: Sequence[Node]) -> Iterator[str]:
 
 
 def _lone_names(sides: Sequence[Node]) -> set[str]:
-    """Return the names that are a whole side of a claim and occur nowhere else in it, as L in ``L = r x p``."""
+    """Return the names that are a whole side of a claim and occur nowhere else in it, such as L in ``L = r x p``."""
     everywhere = [node.value for node in nodes_of(*sides) if node.kind == "name"]
     is_number = any(side.kind == "number" and side.value for side in sides)
     # a side such as 3 asks for the components: then no name is lone

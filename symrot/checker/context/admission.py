@@ -90,7 +90,7 @@ def admits_name(context: Context, name: str, quantity: str) -> bool:
 def is_usual_for_body(context: Context, sequence: str) -> bool:
     """Return whether books use an Euler sequence for the context's body: ZXZ or ZYZ for a top, any for other bodies.
 
-    True for any sequence if the context states one.
+    If the context states a sequence, return True for every sequence.
     """
     is_top = context.body is not None and context.body.kind.title in TITLES_OF_TOPS
     # the second angle of ZXZ and ZYZ tilts the axis of the top
@@ -151,7 +151,7 @@ the axis of symmetry."""
 def _has_axes(name: str, axes: str) -> bool:
     """Return whether the axis in a formula's ``name``, x in "moment of inertia of a disk, x axis", is one of ``axes``.
 
-    True also if the name has no axis, or if its body is neither a rod nor round.
+    Return True also if the name has no axis, or if its body is neither a rod nor round.
     """
     _, bodies = LINES["about a transverse axis through the centre"]
     axis = re.search(r", ([xyz]) axis", name)

@@ -206,7 +206,7 @@ def assignments_of(
 
 
 def _may_be(context: Context, name: str, symbol: str, pinned: set[str]) -> bool:
-    """Return whether a letter of a claim can stand for a symbol of a known formula, as r for R.
+    """Return whether ``name``, a letter of a claim, can stand for ``symbol`` in a known formula: r for R.
 
     ``pinned`` are the letters that the context gives to dimensions of the body: such a letter stands only for itself.
     """

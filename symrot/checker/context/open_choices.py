@@ -43,7 +43,8 @@ def with_order(context: Context, verdict: Verdict, letters: Sequence[str]) -> Ve
 def with_sides(verdict: Verdict) -> Verdict:
     """Return the verdict, but "recognised" in place of "true" if the axes of the sides a, b, c of a body were guessed.
 
-    For instance, a claim about a box may mean by a the side along y, and not, as symrot does, the side along x.
+    For instance, the letter a in a claim about a box may mean the side along y; in symrot's formulas it is the side
+    along x.
     """
     readings = [known for known in verdict.recognised_as if not any(re.fullmatch(SIDES, old) for old in known.mapping)]
     # known formulas call the sides, or semi-axes, along x, y and z a, b and c: without renaming, nothing is guessed

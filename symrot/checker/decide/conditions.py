@@ -174,11 +174,10 @@ def _matches(pattern: re.Pattern[str], leaf: Expr) -> bool:
 
 
 def branch_requirements(ring: FormulaRing, numerators: Sequence[PolyElement]) -> list[Requirement] | None:
-    """Return a list with the one condition under which a claim with square roots is true: ``x >= 0`` for
-    ``sqrt(x**2) == x``.
+    """Return [condition] for a claim with square roots that is true under this condition on signs.
 
-    ``numerators`` are those of the differences between left and right sides. Return [] if the condition always holds,
-    and None if no condition is known.
+    The condition is ``x >= 0`` for ``sqrt(x**2) == x``. ``numerators`` are the numerators of left minus right, one for
+    each entry whose sides differ. Return [] if the condition always holds, and None if no condition is known.
     """
     for root, place in ring.roots.items():
         if root.index != 2 or root.expression.is_number:

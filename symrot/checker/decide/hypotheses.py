@@ -316,8 +316,9 @@ class Hypotheses:
     def _by_enclosures(
         self, left: Expr, right: Expr, entry: tuple[int, int] | None, attempts: int
     ) -> Counterexample | None:
-        """Return a point where the intervals that enclose the two sides are disjoint, so that the sides differ; or
-        None.
+        """Return a counterexample: a point where the intervals that enclose the two sides are disjoint; or None.
+
+        The arguments are those of :meth:`witness`.
         """
         ring, constraints = self.ring, self.constraints
         known = {*ring.symbols.values(), *ring.roots.values()}

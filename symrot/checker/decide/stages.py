@@ -241,8 +241,9 @@ def _needs(case: ClaimCase) -> list[Need]:
 
 
 def _independent(nonzero: Mapping[str, Expr]) -> dict[str, Expr]:
-    """Return ``nonzero``, a map of texts to formulas that must not be zero, without those implied by others: x**2
-    beside x.
+    """Return ``nonzero`` without the formulas that are never zero and those that another formula implies.
+
+    ``nonzero`` maps texts to formulas that must not be zero. If it has x, the formula x**2 is left out.
     """
     remaining = {}
     for text, form in nonzero.items():
@@ -299,10 +300,10 @@ def _is_long(requirement: Requirement) -> bool:
 def _within_range(
     ring: FormulaRing, numerator: PolyElement
 ) -> tuple[list[Requirement], tuple[FormulaRing, ...]] | None:
-    """Return ([condition], rings): a range of values in which a claim with inverse functions is true, such as
-    ``-pi/2 <= asin(x) + asin(y) <= pi/2``, and the rings in which this is proven.
+    """Return ([condition], rings) for a claim with inverse functions that is true in a range of values.
 
-    The list is empty if the claim is true without a condition. Return None if no such range is known.
+    The condition states the range, such as ``-pi/2 <= asin(x) + asin(y) <= pi/2``; the proof uses the rings. The list
+    is empty if the claim is true without a condition. Return None if no such range is known.
     """
     within = principal(ring, numerator)
     if within is None:
