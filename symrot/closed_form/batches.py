@@ -37,8 +37,8 @@ from symrot.formula import exact_numbers as number
 from symrot.kinematics.hamilton import hamilton
 
 __all__ = [
-    "Column", "attitudes", "driven", "free_bodies", "free_bodies_of_moments", "free_bodies_of_tensors", "gyrostats",
-    "spin_ups", "tops", "turned", "usual",
+    "Column", "attitudes", "driven", "fits_batch", "free_bodies", "free_bodies_of_moments", "free_bodies_of_tensors",
+    "gyrostats", "spin_ups", "tops", "turned",
 ]  # fmt: skip
 
 Column = Floats | Fraction
@@ -160,15 +160,15 @@ def _together(values: Sequence[Column], n: int) -> Floats:
     return _columns(values, n)[0] if all(isinstance(value, Fraction) for value in values) else _columns(values, n)
 
 
-def usual(omega: Floats) -> NDArray[np.bool_]:
+def fits_batch(omega: Floats) -> NDArray[np.bool_]:
     """Return for each angular velocity, shape (n, 3), whether a batch can compute its motion.
 
-    The largest absolute value of its components must be zero or from SMALLEST to LARGEST.
+    The largest absolute value of its components must be zero or from SMALLEST to LARGEST; other motions must be
+    computed one by one.
     """
-    # other motions must be computed one by one
     largest = abs(omega).max(axis=1)
-    is_usual: NDArray[np.bool_] = (largest <= LARGEST) & ((largest >= SMALLEST) | (largest == 0))
-    return is_usual
+    is_fitting: NDArray[np.bool_] = (largest <= LARGEST) & ((largest >= SMALLEST) | (largest == 0))
+    return is_fitting
 
 
 def _noticed(omega: Floats) -> Floats:
@@ -180,8 +180,8 @@ def _noticed(omega: Floats) -> Floats:
 def free_bodies(body: FreeRigidBody, omega: Floats, start: Floats) -> Batch:
     """Return the motions of one free body from n initial states as a batch.
 
-    :func:`usual` must be True for all rows of ``omega``. ``start`` are the initial attitudes that :func:`attitudes`
-    returns: two doubles for each component of a quaternion, shape (n, 8), or (8,) for one attitude.
+    :func:`fits_batch` must be True for all rows of ``omega``. ``start`` are the initial attitudes that
+    :func:`attitudes` returns: two doubles for each component of a quaternion, shape (n, 8), or (8,) for one attitude.
     """
     exact = np.empty((len(omega), 8))
     exact[:, :6] = body.gaps
