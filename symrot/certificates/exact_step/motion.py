@@ -17,19 +17,20 @@ from symrot.codegen.steps import SIZE
 from symrot.errors import CertificateError
 from symrot.formula.program import Program
 
-__all__ = ["motion_section", "require_limits"]
+__all__ = ["LAW", "motion_section", "require_limits"]
 
 LAW = (
     "for dt = 0 the state is unchanged, and the derivative of the new state with respect to dt is the rates at the "
     "new state"
 )
+"""The law of an exact step, in the words of certificates."""
 # a wrong formula with one square root holds at a random point where the root exists with a probability of at most
 # 8 degree/PRIME
 FACTOR = 8
 
 
 class _NoRootError(ArithmeticError):
-    """Raised for the square root of a number that has no square root modulo the prime."""
+    """Raised for the square root of a number that has no square root modulo the prime ``PRIME`` = 2^127 - 1."""
 
 
 def require_limits(file: str, operations: Operations) -> None:
