@@ -79,13 +79,8 @@ class Crossings:
         :attr:`switchings`. Raise PropagationError if the derivatives after the switch do not exist.
         """
         guards = self.guards
-        changed = [
-            mode
-            for mode, value in after.modes.items()
-            if mode
-            not in {*before.held, *after.held, *guards.system.tied(before.held), *guards.system.tied(after.held)}
-            and value != before.modes[mode]
-        ]
+        sliding = {*before.held, *after.held, *guards.system.tied(before.held), *guards.system.tied(after.held)}
+        changed = [mode for mode, value in after.modes.items() if mode not in sliding and value != before.modes[mode]]
         held, released = after.held - before.held, sorted(before.held - after.held)
         if not changed and not held and not released:
             return by
@@ -125,7 +120,7 @@ class Crossings:
             alone = not held and set(changed) <= causes.keys()
             change = self._at_once(before, flips, alone)
             if change is not None:
-                self._append_switches(after.begin, rows, rows[first])
+                self._append_switches(after.begin, rows, rows[first], {*changed, *sliding})
                 return np.asarray(by - change)
         if not causes:
             for mode in released:
@@ -133,7 +128,7 @@ class Crossings:
                 speed = value.along(f)
                 grazes = not abs(speed) > STEEP * value.size(f)
                 rows[mode] = np.full(len(by.T), np.nan) if grazes else 0.0 - value.change(by) / speed
-        self._append_switches(after.begin, rows, rows[first] if first is not None else None)
+        self._append_switches(after.begin, rows, rows[first] if first is not None else None, {*changed, *sliding})
         return by if first is None else np.asarray(by - np.outer(later - f, rows[first]))
 
     def _at_once(self, interval: Interval, flips: dict[str, Flip], alone: bool) -> Floats | None:
@@ -203,19 +198,23 @@ class Crossings:
                     raise refusal
         return np.asarray(jumps.T @ np.array([flips[group[0]].time for group in groups]))
 
-    def _append_switches(self, instant: Instant, rows: Mapping[str, Floats], others: Floats | None) -> None:
+    def _append_switches(
+        self, instant: Instant, rows: Mapping[str, Floats], others: Floats | None, changed: set[str]
+    ) -> None:
         """Append the switches at an instant to :attr:`switchings`, with the m derivatives of their time.
 
         ``rows`` is a map from a switching function to the m derivatives of the time at which the function switches. The
         function is named by its mode, the number that replaces the function in formulas. ``others`` are the derivatives
-        for every function that is not in ``rows``; None stands for NaN.
+        for every other function in ``changed``, whose value differs before and after the instant or whose argument
+        stays at zero; None stands for NaN. A function that switches at the instant and back again has NaN.
         """
+        names = set(map(self.guards.name, changed))
         unknown = np.full(len(self.guards.parameter_slopes.columns), np.nan)
         for (t, label), how in self._changes.items():
             if t == instant.high:
                 # clip has two modes
                 row = next((own for mode, own in rows.items() if self.guards.name(mode) == label), None)
-                own = row if row is not None else others if others is not None else unknown
+                own = row if row is not None else others if others is not None and label in names else unknown
                 self.switchings.append(SwitchSlopes(t, label, how, own))
 
 
