@@ -14,13 +14,13 @@ from symrot.exact.intervals import enclosure
 __all__ = ["rounded_value", "with_rounding"]
 
 LONG_WHOLE = re.compile(r"[1-9]\d+[1-9]")
-"""Pattern of an integer that may be a rounded number, such as 157: three digits or more, neither 0 first nor last."""
+"""Pattern of an integer that may be a rounded number, such as 157: three digits or more, the first and last not 0."""
 
 
 def with_rounding(claim: Claim, verdict: Verdict) -> Verdict:
     """Return the verdict "true" for a claim such as ``2/3 == 0.667``, whose decimal number is correctly rounded.
 
-    A number with two dots after it, ``0.66..``, may also be cut off.
+    A number with two dots after it, ``0.66..``, may also be truncated.
 
     For a wrong digit, return ``verdict`` with the diagnosis "digits" and the corrected claim as its repair, or the
     verdict "false" if the right digits cannot be written. Return ``verdict`` for any other claim.
@@ -83,10 +83,10 @@ def _scientific(tree: Node) -> tuple[Node, int]:
 
 
 def _long_whole(node: Node, source: str, value: Node) -> str:
-    """Return the digits of ``node``, as typed in ``source``, if it is an integer that may round ``value``; otherwise
-    "".
+    """Return the digits of the integer ``node``, as typed in ``source``, if the integer may be ``value`` rounded.
 
-    157 may round ``1500*2*pi/60``.
+    For instance, 157 may be ``1500*2*pi/60`` rounded. The value must contain pi, a function call such as a root, or a
+    decimal number. Otherwise, and for nodes other than long integers, return "".
     """
     sign, inner = ("-", node.args[0]) if node.kind == "neg" else ("", node)
     digits = source[inner.span[0] : inner.span[1]]
