@@ -258,7 +258,7 @@ class NumericFilter:
 class TriedPaths:
     """A function of a path in a tree: whether an edit of the part at this path could make the claim true.
 
-    An edit inside one entry of a matrix cannot, if another entry is wrong.
+    If a matrix has several wrong entries, an edit inside one entry cannot make the claim true.
     """
 
     cells: tuple[Path, ...]  # paths of the entries, if the tree is a written-out matrix
@@ -290,7 +290,7 @@ def is_nontrivial(tree: Node) -> bool:
 def _divides_by_itself(tree: Node) -> bool:
     """Return whether a product in a tree multiplies and divides by the same factor, such as y in ``x/y*y``.
 
-    A number as this factor does not count.
+    Factors that are numbers do not count.
     """
     for _, node in walk(tree):
         if node.kind == "product":
