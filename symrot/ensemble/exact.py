@@ -285,7 +285,7 @@ def _batches(variation: Variation, kind: Kind, rows: Rows) -> Iterator[tuple[Row
     if make is None:
         yield rows, None, None
         return
-    from symrot.closed_form.batches import usual
+    from symrot.closed_form.batches import in_range
 
     # correctly: with the same bits as a single motion; all others are computed one by one
     for part in _parts(variation, kind, rows):
@@ -301,7 +301,7 @@ def _batches(variation: Variation, kind: Kind, rows: Rows) -> Iterator[tuple[Row
             for name in variation.columns:
                 size = abs(variation.columns[name][part.rows])
                 fine = fine & (size <= LARGEST) & ((size >= SMALLEST) | (size == 0))
-            fine = fine & usual(part.omega)
+            fine = fine & in_range(part.omega)
         yield part.rows, batch, fine
 
 
