@@ -152,7 +152,7 @@ def _directions(real: Real, count: int, kind: Any) -> Floats:
 def _text(kernel: str) -> str:
     """Return the C text of a kernel and of loops over arrays that call its functions of :data:`FUNCTIONS`."""
     program, reals = kernel_program(kernel), (DOUBLE, FLOAT)
-    source = c_functions(program, reals, near=True).replace(f'#include "{MATH_HEADER}"', "")
+    source = c_functions(program, reals, branch_free=True).replace(f'#include "{MATH_HEADER}"', "")
     header = c_header(program, kernel_description(definition(kernel), "c"), reals)
     text = math_header() + source.replace(f'#include "{kernel}.h"', header)
     functions = {function.name: function for function in FUNCTIONS if function.kernel == kernel}
