@@ -52,8 +52,8 @@ class PortableFreeBody:
         I2 - I3, I3 - I1, I1 - I2, and the defect divided by the square of the largest moment times the largest
         component of ``omega``; None if the sums in ``inertia`` and ``omega`` are exact.
     axes : list of 26 floats, or None
-        The rotation from the principal axes to the body axes, as a matrix row by row and as a unit quaternion; None if
-        the body axes are principal axes.
+        The matrix, row by row, that converts components along the principal axes to components along the body axes, and
+        its unit quaternion; None if the body axes are principal axes.
 
     Raises
     ------
