@@ -38,9 +38,10 @@ def with_rounding(claim: Claim, verdict: Verdict) -> Verdict:
 def rounded_value(claim: Claim) -> str:
     """Return the value of ``claim.value`` rounded to as many decimal places as ``claim.printed`` has; "" if uncertain.
 
-    ``claim.printed`` is the number that the document prints. A value that would round to zero gets as many significant
-    digits as this number has: 0.05 for 5 % and a printed 0.5. Return "" if the printed number then has a power of ten,
-    or if this power or the value exceeds the range of doubles.
+    ``claim.printed`` is the number that the document prints. A value that would round to zero is rounded to as many
+    significant digits as the printed number has: for the value 4 % and a printed 0.5, return "0.04", not "0.0".
+    Return "" if such a value is printed with a power of ten, as 5e-3, and if the power or the value exceeds the range
+    of doubles.
     """
     assert claim.value is not None
     interval = enclosure(claim.interpreter().read(claim.value))

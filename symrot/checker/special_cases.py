@@ -18,9 +18,10 @@ __all__ = ["for_complex_numbers", "for_special_directions"]
 UNIT = "i"
 NO_FAULT = Diagnosis("none", "")
 FACTOR, OTHER = "factor_", "other_"
-"""Names that no claim has, of the positive number k in b = k a and of the vector c in b = a x c.
+"""Names of the positive number k in b = k a, and of the vector c in b = a x c; no claim uses these names.
 
-With these equations a claim about vectors a and b is tested for parallel and for perpendicular vectors.
+The equation b = k a makes the vectors a and b of a claim parallel, and b = a x c makes them perpendicular. The claim is
+then tested for these special directions.
 """
 
 

@@ -59,8 +59,9 @@ class Finding:
         What the corrected formula comes from: the ``"search"`` for repairs, a ``"derivation"`` from the reference, or
         the ``"proposal"`` of a person.
     conditions : tuple of str
-        Conditions that the document does not state, and that quantities with their usual signs may violate. A true
-        formula (verdict "true") needs all of them; one with the verdict "conditional" needs any one of them.
+        Conditions that the document does not state, and that quantities with their usual signs may violate. If the
+        verdict is "conditional", each of them alone makes the formula true. Otherwise the formula needs all of them:
+        a formula with the verdict "true" is undefined where one fails.
     words : str
         Words for the conditions from the document's file; empty if it has none.
     """
@@ -185,8 +186,8 @@ def _correction(claim: Claim, verdict: Verdict, formula: PrintedFormula | None) 
         if place not in claim.editable:
             parts = ", ".join(claim.editable)
             raise InputError(
-                f"{claim.id}: {origin}: expected a correction of a part that the claim's key editable allows "
-                f"({parts}), got one of {place!r}"
+                f"{claim.id}: {origin}: expected a correction of {parts}, as the claim's key 'editable' states "
+                f"(without this key, only left may be corrected), got a correction of {place!r}"
             )
         trees[place] = read_expression(source, f"{claim.id}: {place}", Declared(names, claim.functions))
     if origin != "search" and decide_equation(claim.with_parts(trees).equation).verdict != "true":

@@ -212,8 +212,9 @@ class Verdict:
 
     Notes
     -----
-    In an ``if`` a verdict counts as :attr:`holds`. So ``check(a) or check(b)`` drops what "doubtful" or "conditional"
-    says: compare ``.verdict`` instead, and compare with None to ask whether there is a verdict.
+    The truth value of a verdict is :attr:`holds`, which is False for "doubtful" and "conditional" too. So
+    ``check(a) or check(b)`` loses such a verdict on a: compare ``.verdict`` with a word instead. Write
+    ``verdict is None`` to ask whether there is no verdict.
 
     Examples
     --------

@@ -64,7 +64,7 @@ def _certify(options: Namespace) -> int:
         every, written = certificates.certify_all(options.directory, options.objects, progress)
         progress("")
         say_json(every) if options.json else say([*certificates.all_lines(every), *map(str, written)])
-        return FAILED if options.objects and certificates.refuted(every.values()) else OK
+        return FAILED if options.objects and certificates.lacks_proof_of_bits(every.values()) else OK
     if not options.kernel:
         raise InputError("certify: expected a KERNEL or --all (see `symrot certify --help`)")
     certificate = symrot.certify(

@@ -37,8 +37,8 @@ from symrot.formula import exact_numbers as number
 from symrot.kinematics.hamilton import hamilton
 
 __all__ = [
-    "Column", "attitudes", "driven", "free_bodies", "free_bodies_of_moments", "free_bodies_of_tensors", "gyrostats",
-    "in_range", "spin_ups", "tops", "turned",
+    "Column", "attitudes", "driven", "fits_batch", "free_bodies", "free_bodies_of_moments", "free_bodies_of_tensors",
+    "gyrostats", "spin_ups", "tops", "turned",
 ]  # fmt: skip
 
 Column = Floats | Fraction
@@ -160,15 +160,15 @@ def _together(values: Sequence[Column], n: int) -> Floats:
     return _columns(values, n)[0] if all(isinstance(value, Fraction) for value in values) else _columns(values, n)
 
 
-def in_range(omega: Floats) -> NDArray[np.bool_]:
+def fits_batch(omega: Floats) -> NDArray[np.bool_]:
     """Return for each angular velocity, shape (n, 3), whether a batch can compute its motion.
 
-    The largest absolute value of its components must be zero or from SMALLEST to LARGEST. The caller must compute all
-    other motions one by one.
+    The largest absolute value of its components must be zero or from SMALLEST to LARGEST; other motions must be
+    computed one by one.
     """
     largest = abs(omega).max(axis=1)
-    is_in_range: NDArray[np.bool_] = (largest <= LARGEST) & ((largest >= SMALLEST) | (largest == 0))
-    return is_in_range
+    is_fitting: NDArray[np.bool_] = (largest <= LARGEST) & ((largest >= SMALLEST) | (largest == 0))
+    return is_fitting
 
 
 def _noticed(omega: Floats) -> Floats:
@@ -180,9 +180,9 @@ def _noticed(omega: Floats) -> Floats:
 def free_bodies(body: FreeRigidBody, omega: Floats, start: Floats) -> Batch:
     """Return the motions of one free body from n initial states as a batch.
 
-    ``omega`` are the initial angular velocities, rad/s, shape (n, 3), neither too large nor too small (:func:`in_range`
-    is True for each). ``start`` are the initial attitudes that :func:`attitudes` returns: two doubles for each
-    component of a quaternion, shape (n, 8), or (8,) if all motions share one attitude.
+    ``omega`` are the initial angular velocities, rad/s, shape (n, 3); :func:`fits_batch` must be True for each.
+    ``start`` are the initial attitudes that :func:`attitudes` returns: two doubles for each component of a quaternion,
+    shape (n, 8), or (8,) if all motions share one attitude.
     """
     exact = np.empty((len(omega), 8))
     exact[:, :6] = body.gaps

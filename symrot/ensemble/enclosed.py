@@ -16,7 +16,11 @@ from symrot.propagation.steppers.stepping import Floats
 __all__ = ["Enclosed", "exact"]
 
 ERROR = 2.0**-98
-"""Bound of the relative error of one operation on sums of two doubles (2^-104), with room for rounding of the bound."""
+"""Bound of the relative error of one operation on sums of two doubles.
+
+The operation itself is in error by at most 2^-104. The larger number also covers the rounding of the error bounds,
+which are computed in double precision.
+"""
 
 LEAST, MOST = 2.0**-900, 2.0**900  # products and quotients of this size have an exact error term
 
@@ -76,8 +80,9 @@ class Enclosed:
 def _made(high: Floats, low: Floats, error: Floats, size: Floats) -> Enclosed:
     """Return the numbers ``high + low`` with ``error``, a bound of their errors.
 
-    The bound becomes infinite where ``size`` (of the operands of a sum, or of a product) is neither 0 nor between LEAST
-    and MOST: ``error`` is not a bound there.
+    ``size`` is the sum of the sizes of both operands for a sum, and the size of the result for a product or quotient.
+    Where it is neither 0 nor between LEAST and MOST, an operation may lose digits to underflow or overflow: ``error``
+    is not a bound there, and the bound becomes infinite.
     """
     safe = (size == 0) | (size > LEAST) & (size < MOST)
     return Enclosed(high, low, np.where(safe, error, np.inf))

@@ -114,15 +114,15 @@ class Solved(NamedTuple):
     form: ClosedForm
     rows: Rows
     batch: "Batch | None"  # the arrays; None if the trajectories are computed one by one
-    # false for numbers so large or small that intermediate results lose digits: these are single motions
-    usual: Any  # whether the arrays give the right bits, for each row or for all rows
+    # false for numbers so large or small that intermediate results lose digits: these are computed one by one
+    in_batch: Any  # whether the batch gives the same bits as a single motion, for each row or for all rows
 
 
 def choose(variation: Variation, times: Floats, start: float, faster: bool) -> list[Solved]:
     """Return the trajectories of an ensemble to compute in closed form, in groups with equal form.
 
-    All other trajectories are integrated in steps. With ``faster``, trajectories that have a closed form but are
-    integrated faster are among them.
+    All other trajectories are integrated in steps. With ``faster``, steps are also used for a trajectory that has a
+    closed form and for which steps are faster.
     """
     solved: list[Solved] = []
     for kind, rows in forms_of(variation):
@@ -135,11 +135,11 @@ def choose(variation: Variation, times: Floats, start: float, faster: bool) -> l
         least = ARRAYS_LOSE_BELOW.get(kind.form.name) if faster and not variation.columns else None
         if least is not None:
             rows = rows[_angles(variation, times, start)[rows] > least]
-        for each, batch, usual in [(rows, None, None)] if without_compiler else _batches(variation, kind, rows):
+        for each, batch, in_batch in [(rows, None, None)] if without_compiler else _batches(variation, kind, rows):
             if batch is None and faster:
                 each = each[_angles(variation, times, start)[each] > ALONE_LOSES_BELOW.get(kind.form.library, 0.0)]
             if len(each):
-                solved.append(Solved(kind.form, each, batch, usual))
+                solved.append(Solved(kind.form, each, batch, in_batch))
     return solved
 
 
@@ -169,7 +169,7 @@ def follow_exact(
     ``quaternion`` is None if no attitude is needed.
     """
     since = times - start if start else times
-    form, rows, batch, usual = solved
+    form, rows, batch, in_batch = solved
     whole = len(rows) == len(variation)
     alone: Sequence[int] = range(len(rows))
     if batch is not None:
@@ -180,7 +180,7 @@ def follow_exact(
         rates = omega if whole else np.empty((*shape, 3))
         attitudes = quaternion if whole or quaternion is None else np.empty((*shape, 4))
         odd = evaluate(batch, own, rates, attitudes, workers)
-        alone = sorted({*odd, *np.flatnonzero(np.logical_not(usual)).tolist()})
+        alone = sorted({*odd, *np.flatnonzero(np.logical_not(in_batch)).tolist()})
         if not whole:
             omega[rows] = rates
             if quaternion is not None and attitudes is not None:
@@ -238,7 +238,8 @@ class _Alone:
 # ------------------------------------------------------------------------------------------------ arrays of each form
 
 _FAR = 1e100  # quotients of moments, torques and damping between 1/_FAR and _FAR neither over- nor underflow
-Usual = NDArray[np.bool_] | bool
+InBatch = NDArray[np.bool_] | bool
+"""Whether a batch computes a trajectory with the same bits as a single motion: for each trajectory, or for all."""
 
 
 class _Part(NamedTuple):
@@ -277,17 +278,17 @@ class _Part(NamedTuple):
 
 
 def _batches(variation: Variation, kind: Kind, rows: Rows) -> Iterator[tuple[Rows, "Batch | None", Any]]:
-    """Yield groups of the trajectories ``rows``, all of one closed form, as (indices, batch, usual).
+    """Yield groups of the trajectories ``rows``, all of one closed form, as (indices, batch, in_batch).
 
-    ``usual`` tells which trajectories the batch computes correctly. If ``batch`` is None, all are computed one by one.
+    ``batch`` has the constants of a group as arrays, and ``in_batch`` tells which of its trajectories are computed with
+    these arrays. The others are computed one by one; if ``batch`` is None, these are all trajectories of the group.
     """
     make = BATCHES.get(kind.form.library) if kind.form else None
     if make is None:
         yield rows, None, None
         return
-    from symrot.closed_form.batches import in_range
+    from symrot.closed_form.batches import fits_batch
 
-    # correctly: with the same bits as a single motion; all others are computed one by one
     for part in _parts(variation, kind, rows):
         batch, fine = make(part)
         if batch is not None and make is _free and not np.all(fine):
@@ -301,7 +302,7 @@ def _batches(variation: Variation, kind: Kind, rows: Rows) -> Iterator[tuple[Row
             for name in variation.columns:
                 size = abs(variation.columns[name][part.rows])
                 fine = fine & (size <= LARGEST) & ((size >= SMALLEST) | (size == 0))
-            fine = fine & in_range(part.omega)
+            fine = fine & fits_batch(part.omega)
         yield part.rows, batch, fine
 
 
@@ -321,7 +322,7 @@ def _parts(variation: Variation, kind: Kind, rows: Rows) -> Iterator[_Part]:
             yield _Part(variation, kind.axis, group, np.ascontiguousarray(variation.omega[group]))
 
 
-def _free(part: _Part) -> tuple["Batch | None", Usual]:
+def _free(part: _Part) -> tuple["Batch | None", InBatch]:
     from symrot.closed_form import batches
     from symrot.closed_form.free_body.motion import FreeRigidBody
 
@@ -341,7 +342,7 @@ def _doubles(value: Any) -> Any:
     return float(value) if isinstance(value, Fraction) else value
 
 
-def _top(part: _Part) -> tuple["Batch | None", Usual]:
+def _top(part: _Part) -> tuple["Batch | None", InBatch]:
     from symrot.closed_form import batches
     from symrot.closed_form.heavy_top.motion import Frame
 
@@ -376,7 +377,7 @@ def _top(part: _Part) -> tuple["Batch | None", Usual]:
     return batches.tops(*part.moments(), sign * pull, frame, part.omega, start), fine
 
 
-def _gyrostat(part: _Part) -> tuple["Batch | None", Usual]:
+def _gyrostat(part: _Part) -> tuple["Batch | None", InBatch]:
     from symrot.closed_form import batches
 
     assert part.axis is not None
@@ -401,7 +402,7 @@ def _driving(part: _Part, kind: str, field: str, axis: int) -> Any:
     return components[0] if len(components) == 1 else None
 
 
-def _driven(part: _Part) -> tuple["Batch | None", Usual]:
+def _driven(part: _Part) -> tuple["Batch | None", InBatch]:
     from symrot.closed_form import batches
     from symrot.closed_form.axial.compiled import Constants
     from symrot.closed_form.axial.motion import Driven
@@ -430,7 +431,7 @@ def _driven(part: _Part) -> tuple["Batch | None", Usual]:
         return None, False
 
 
-def _spin_up(part: _Part) -> tuple["Batch | None", Usual]:
+def _spin_up(part: _Part) -> tuple["Batch | None", InBatch]:
     from symrot.closed_form import batches
 
     assert part.axis is not None
@@ -440,7 +441,7 @@ def _spin_up(part: _Part) -> tuple["Batch | None", Usual]:
     return batches.spin_ups(*part.moments(), torque, part.axis, part.omega, part.start), True
 
 
-BATCHES: dict[str, Callable[[_Part], tuple["Batch | None", Usual]]] = {
+BATCHES: dict[str, Callable[[_Part], tuple["Batch | None", InBatch]]] = {
     "free_body": _free,
     "heavy_top": _top,
     "gyrostat": _gyrostat,
@@ -449,6 +450,6 @@ BATCHES: dict[str, Callable[[_Part], tuple["Batch | None", Usual]]] = {
 }
 """Name of a closed form's C library -> function that prepares some trajectories (a :class:`_Part`) for it.
 
-The function returns (batch, usual). ``batch`` are the constants of the trajectories as arrays, or None if they must be
-computed one by one. ``usual`` tells, for each trajectory or for all, whether the arrays give the same bits as the
-computation of a single motion."""
+The function returns (batch, in_batch). ``batch`` are the constants of the trajectories as arrays, or None if the
+trajectories must be computed one by one. ``in_batch`` tells, for each trajectory or for all, whether the arrays give
+the same bits as the computation of a single motion."""

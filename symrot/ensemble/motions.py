@@ -254,8 +254,9 @@ class _Stepped:
     def clock(self, k: int, make: Callable[[Plan, SceneKernel], Any] = motion_library) -> Any:
         """Return a function that takes an epoch and returns (rates of motion k, values of their parameters).
 
-        The rates are what ``make`` returns, a compiled library or a Python function, and take the time since the epoch:
-        a stepper calls the function to reset its clock to 0. Return None if the rates do not depend on time.
+        The rates are what ``make`` returns, a compiled library or a Python function, and take the time since the epoch.
+        A stepper that begins to count its time from a new epoch calls the function for the rates in this time. Return
+        None if the rates do not depend on time.
         """
         # see symrot.propagation.time_shift.clock
         if not self.kernel.rates.uses("t"):

@@ -50,7 +50,10 @@ class Numbers:
         self._columns = {name: varying[name][self._chosen] for name in plan.constants if name in varying}
 
     def constants(self, k: int) -> dict[str, Fraction]:
-        """Return all constants of trajectory ``chosen[k]`` as exact fractions, by name, such as ``weight`` or ``A``."""
+        """Return all constants of one trajectory as exact fractions, by name, such as ``weight`` or ``A``.
+
+        ``k`` counts the trajectories of this object, so that it is an index into the argument ``chosen`` of the class.
+        """
         return Plan(self._variation.scene_of(self._chosen[k]), self._plan.structure, ()).constants
 
     def values_of(self, parameters: Parameters, epoch: float = 0.0) -> Floats:

@@ -30,7 +30,10 @@ MOST_DRAWS = 10_000
 """Number of random choices after which ProofError is raised, if none of them suits the problem."""
 
 ZERO = 30
-"""Number of digits that an answer of zero counts as, so that such answers, which teach little, are rare."""
+"""The number of digits for which an answer of zero counts in the choice of the numbers with the shortest answers.
+
+An answer of zero teaches little; so it counts as a very long answer, and such answers are rare.
+"""
 
 DIGITS = 17  # significant digits that distinguish any two doubles
 
@@ -186,7 +189,8 @@ class Exercise:
     def from_json(data: Mapping[str, Any]) -> "Exercise":
         """Return the exercise that was converted to ``data`` by :meth:`to_json`.
 
-        Raise KeyError, TypeError, AttributeError or ValueError for other data with questions that cannot be graded.
+        Raise KeyError, TypeError, AttributeError or ValueError if a field is missing or unknown, or if a question
+        cannot be graded.
         """
         plain = dict(data)
         plain["data"] = tuple(Datum(**each) for each in data["data"])

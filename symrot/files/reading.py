@@ -30,8 +30,8 @@ def refuse_special(path: Path) -> os.stat_result:
     Raises
     ------
     OSError
-        If the path is a folder, pipe, socket or device, or if the file does not exist. The attribute ``strerror``
-        completes a message "expected .., got ..".
+        If the path is a folder, pipe, socket or device, or if the file does not exist. The attribute ``strerror`` is
+        the end of a message "expected .., got ..": the words "a folder", for instance.
     ValueError
         If the name of the file contains a NUL character.
     """

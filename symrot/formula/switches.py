@@ -32,7 +32,11 @@ HARMLESS_DEGREE = 6  # polynomials up to this degree are defined everywhere and 
 RISKY = HARMLESS_DEGREE + 1
 
 Conditions = tuple[tuple[Node, int], ...]
-"""Pairs (formula, value), each the condition ``formula = value``; the symbols of the formula are modes of switches."""
+"""Conditions under which a part of a formula applies, as pairs (formula, value): each formula must have its value.
+
+The symbols of these formulas are modes, which stand for the sign or floor of a guard (see `Switch`). The part a of
+``where(t < 1, a, b)`` applies under the condition ``((1 + s)/2, 1)``, where the mode s is the sign of 1 - t.
+"""
 
 
 class Switch(NamedTuple):
@@ -137,8 +141,11 @@ def chosen(node: Node, modes: Mapping[str, int], held: Collection[str] = ()) -> 
 
 
 def blended(node: Node) -> Node:
-    """Return a smooth formula in which each ``where(p, a, b)`` is replaced by the sum ``b + p (a - b)``."""
-    # equal to where(p, a, b) for p = 1 and p = 0, but it needs the values of both a and b
+    """Return a smooth formula in which each ``where(p, a, b)`` is replaced by the sum ``b + p (a - b)``.
+
+    p is a formula of modes (signs that are constant between two jumps), with the value 1 where a applies and 0 where b
+    applies. The sum then equals a or b, but it needs the values of both.
+    """
     return chosen(node, {}, names(node))
 
 
@@ -267,7 +274,8 @@ class _Writer:
         """Return the symbol (mode) that stands for the sign or the floor of the formula ``guard``.
 
         If there is none yet, a :class:`Switch` is added to ``switches``. The arguments are the fields of
-        :class:`Switch`; ``where`` is added to the conditions under which the part being rewritten applies.
+        :class:`Switch`. Inside the a or b of a ``where(c, a, b)``, the switch gets the condition under which this a or
+        b applies, and the conditions ``where`` in addition.
         """
         where = self.conditions + where
         for count in range(len(where) + 1):  # a mode that applies under fewer of the conditions serves as well

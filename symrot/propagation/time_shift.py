@@ -141,9 +141,10 @@ def clock(
 ) -> Callable[[float], tuple[Any, list[float]]]:
     """Return a function that takes an epoch, s after ``start``, and returns rates and the values of their parameters.
 
-    A stepper calls the function when it restarts its clock at a late time: the rates take the time since the epoch. The
-    rates, a compiled library or a Python function, are made once, by ``make`` from the plan and kernel that ``moving``
-    returns. For another epoch only the values of the parameters differ.
+    The rates take the time since the epoch. At a late time, a stepper begins to count its time from a new epoch and
+    calls the function for the rates in this time. The rates, a compiled library or a Python function, are made once, by
+    ``make`` from the plan and kernel that ``moving`` returns. For another epoch only the values of the parameters
+    differ.
     """
 
     # moving(), a plan and kernel as time_shifted returns them, is called on first use; make() turns them into the

@@ -54,7 +54,8 @@ class Certificate:
     files : tuple of Path
         The files that were written.
     objects_compared : bool
-        Whether the call of :func:`certify` that made this object compared object code, not only an earlier call.
+        Whether the call of :func:`certify` that returned this certificate compared object code itself. If not, a
+        verdict on object code in the certificate comes from an earlier call.
 
     Examples
     --------
@@ -73,12 +74,13 @@ class Certificate:
 
     @property
     def refuted(self) -> bool:
-        """Whether :func:`certify` compared object code without proving that it computes the bits of the C text.
+        """Whether :func:`certify` compared object code and did not prove that it computes the bits of the C text.
 
-        The proof needs code compiled with flags that preserve every bit; other code is ignored. The value is False if
-        this call of :func:`certify` compared no code.
+        Only code compiled with flags under which a compiler must keep every bit of the results, such as
+        ``-ffp-contract=off``, counts; if no such code was compared, the proof is missing. The value is False if this
+        call of :func:`certify` compared no code.
         """
-        return self.objects_compared and certificates.refuted([dict(self.data)])
+        return self.objects_compared and certificates.lacks_proof_of_bits([dict(self.data)])
 
     def __str__(self) -> str:
         if is_step(self.data):

@@ -36,9 +36,9 @@ __all__ = [
     "certify",
     "certify_all",
     "flag_lines",
+    "lacks_proof_of_bits",
     "lines",
     "proofs",
-    "refuted",
 ]
 
 PROOFS = {  # kinds of proof, from the derivation to the object code; they label the lines of a printed certificate
@@ -54,14 +54,15 @@ def _proven_statement(data: Data, own: SceneSource | None = None) -> Data | None
     """Return the statements that symrot proves about the kernel named in the certificate ``data``.
 
     The result is None for an unknown kernel. With ``own``, the user's scene, CertificateError is raised unless the
-    certificate is that of the scene's kernel.
+    certificate is that of the kernel which symrot emits for this scene.
     """
     if own is not None:
         jacobian = re.search(r" --jacobian ([\w,]+) ", str(data["regenerate"]))
         text = kernel_text(load_scene(own), jacobian[1].split(",") if jacobian else ())
         if text.name != data["kernel"]:
             raise CertificateError(
-                f"{data['kernel']}: expected the certificate of {text.name}, which is the kernel of the scene"
+                f"{data['kernel']}: expected the certificate of {text.name}, which is the kernel that symrot emits for "
+                f"the scene {load_scene(own).name}, got that of another kernel"
             )
         return proven_statement(text.under_test(data.get("rounding")))
     name = data["kernel"]
@@ -332,14 +333,12 @@ def all_lines(certificates: Mapping[str, Data]) -> list[str]:
     return [*text_lines, *object_code.table({name: data.get("objects") for name, data in certificates.items()})]
 
 
-def refuted(certificates: Iterable[Data]) -> bool:
-    """Return whether the object-code section of a certificate lacks the proof that code and C text compute the same
-    bits.
+def lacks_proof_of_bits(certificates: Iterable[Data]) -> bool:
+    """Return whether one of the certificates has a section on object code that lacks the proof of equal bits.
 
-    The proof needs code compiled with flags that preserve every bit; other code is ignored. The result is False if no
-    certificate has such a section.
+    The proof says that the object code computes the same bits as the C text. Only code compiled with flags under which
+    a compiler must keep every bit of the results counts; a section without such code lacks the proof.
     """
-    # without any such code the proof is missing
     return any(data.get("objects") and not object_code.holds(data["objects"]) for data in certificates)
 
 

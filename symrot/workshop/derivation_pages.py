@@ -145,7 +145,10 @@ def printed_page(name: str) -> PrintedPage:
         return illustrated(derivation(name))
     rest = appendix(_with_figures(derivation(derivation_of(name)))[0])
     if rest is None:
-        raise InputError(f"expected a derivation with an appendix, got {name!r}")
+        raise InputError(
+            f"expected one of the appendices (pages with the steps that only numeric code needs), "
+            f"{', '.join(_appendices(names()))}, got {name!r}"
+        )
     return _printed(rest)
 
 

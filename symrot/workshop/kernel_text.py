@@ -1,7 +1,8 @@
 """The texts of one kernel of the library or of one scene: C, NumPy, JavaScript, JAX and its certificate.
 
-The argument ``bounds`` of the methods has the bounds of a scene kernel's rounding errors; only the comment at the head
-of x"""
+The argument ``bounds`` of the methods has the bounds of a scene kernel's rounding errors. Only the kernel's certificate
+and the comment at the head of its C files depend on these bounds. Library kernels ignore ``bounds``.
+"""
 
 import re
 from abc import ABC, abstractmethod

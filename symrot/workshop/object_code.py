@@ -54,10 +54,11 @@ def objects_of(texts: Mapping[str, str], source: str, programs: str) -> Data:
 
 
 def holds(section: Data | None) -> bool:
-    """Return whether the object code in a certificate is proven to perform the C text, bit by bit.
+    """Return whether the object code in a certificate is proven to compute the same bits as the C text.
 
-    ``section`` is the section ``objects`` of the certificate, or None. Only code whose flags preserve every bit counts;
-    without such code the result is False.
+    ``section`` is the section ``objects`` of the certificate, or None. Only code compiled with flags under which
+    a compiler must keep every bit of the results, such as ``-ffp-contract=off``, counts; without such code, return
+    False.
     """
     strict = [item for item in _objects(section) if item["flags_hold"] == BITS]
     return bool(strict) and all(function["verdict"] == IDENTICAL for item in strict for function in item["functions"])

@@ -366,7 +366,7 @@ def test_one_step_on_the_command_line(form, start, capsys):
         (["--all", "-o", __file__], "expected -o with a folder for the pages, got the file"),
         (["--all", "--format", "html", "-o", __file__], "expected -o with a folder for the pages, got the file"),
         (["poinsot", "-o", __file__], "expected -o with a folder for the pages, got the file"),
-        (["poinsot_appendix"], "expected a derivation with an appendix, got 'poinsot_appendix'"),
+        (["poinsot_appendix"], "free_body_attitude_appendix"),
     ],
 )
 def test_a_page_that_cannot_be_printed_is_refused(words, complaint, capsys):

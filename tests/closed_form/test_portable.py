@@ -2,6 +2,7 @@
 
 from fractions import Fraction
 
+import mpmath
 import numpy as np
 import pytest
 
@@ -31,6 +32,8 @@ CASES = {
     "exact numbers": lambda: free_body.motion((Fraction(1, 3), Fraction(2, 3), 1), (Fraction(1, 7), 1, 2), Q0),
     "full tensor": lambda: free_body.FreeRigidBody(principal_axes(TENSOR)).motion((0.3, 1, 0.5), Q0),
     "nutation": lambda: heavy_top.motion(TOP, 1.0, ABOVE, (0.3, -1.8, 4.0), (0.9, 0.3, 0.0, 0.1)),
+    "nearly upright": lambda: heavy_top.motion((1, 1, 0.3), 2.5, ABOVE, (0, 0.7, 1), (1, -8e-5, 8e-4, 0.3)),
+    "very nearly upright": lambda: heavy_top.motion(TOP, 1.0, ABOVE, (1e-25, 0.0, 0.0), (1.0, 0.0, 0.0, 0.0)),
     "weak pull": lambda: heavy_top.motion(TOP, 1e-60, ABOVE, (0.3, -1.8, 0.4), (0.9, 0.3, 0.0, 0.1)),
     "pendulum": lambda: heavy_top.motion(TOP, 1.0, ABOVE, (0.0, 1.0, 0.0), (0.9, 0.1, 0.3, 0.0)),
     "plane separatrix": lambda: heavy_top.motion(TOP, 1.0, ABOVE, (2.0, 0.0, 0.0), (0.0, 1.0, 0.0, 0.0)),
@@ -43,6 +46,42 @@ CASES = {
     "gyrostat": lambda: gyrostat.motion((2, 1, 1), (-1, 0, 0), (0.3, 1, 0.5), Q0),
 }
 TIMES = np.concatenate([np.linspace(-20.0, 50.0, 141), [0.0, 1e3, 1e6]])
+
+
+@pytest.mark.parametrize("compiler", ["cc", "no such compiler"])
+def test_a_start_too_near_to_an_unstable_one_is_refused(compiler, monkeypatch):
+    """A tilt of 1e-30 rad grows to 1e-3 rad in 60 s; it was taken for zero, so that the top never fell."""
+    monkeypatch.setenv("CC", compiler)
+    monkeypatch.setattr(library, "_loaded", {})
+    upright = (1.0, 0.0, 0.0, 0.0)
+    for rate in (1e-30, 1e-33, 1e-300):
+        with pytest.raises(InputError, match="1e-29 rad of the unstable upright position"):
+            heavy_top.motion(TOP, 1.0, ABOVE, (rate, 0.0, 0.0), upright)
+        with pytest.raises(InputError, match="1e-29 rad of the unstable upright position"):
+            heavy_top.motion(TOP, 1.0, ABOVE, (0.0, 0.0, 3.0), (1.0, 0.0, rate, 0.0))
+        fast = heavy_top.motion(TOP, 1.0, ABOVE, (rate, 0.0, 5.0), upright)  # stable
+        assert np.abs(fast.evaluate([100.0])[1][0, 1:3]).max() < 1e-29
+    assert heavy_top.motion(TOP, 1.0, ABOVE, (0.0, 0.0, 3.0), upright).regime == "steady"
+    for omega in [(1e-160, 1.0, 0.0), (1e-160, 1.0, -1e-170)]:
+        with pytest.raises(InputError, match="the middle axis exactly"):
+            free_body.motion((1.0, 2.0, 3.0), omega, upright)
+    for omega in [(0.0, 1.0, 0.0), (1e-160, 0.0, 1.0), (1.0, 0.0, 1e-160)]:
+        assert free_body.motion((1.0, 2.0, 3.0), omega, upright).regime == "steady"
+
+
+@pytest.mark.parametrize(
+    ("rate", "times"), [(1e-20, (10, 40, 50, 80)), (1e-25, (10, 60, 90)), (2e-29, (10, 60, 70, 80))]
+)
+def test_a_top_falls_from_near_the_vertical_when_the_pendulum_does(rate, times):
+    """sin(theta/2) = cn(K - t/k) with k^2 = 1/(1 + (rate/2)^2), for pull and moment 1, started upright."""
+    with mpmath.workdps(120):
+        across = mpmath.mpf(rate) / 2
+        m = 1 / (1 + across**2)
+        start = mpmath.ellipk(m)
+        expected = [float(mpmath.ellipfun("cn", start - t * mpmath.sqrt(1 + across**2), m=m)) for t in times]
+    motion = heavy_top.motion((1.0, 1.0, 0.5), 1.0, ABOVE, (rate, 0.0, 0.0), (1.0, 0.0, 0.0, 0.0))
+    found = motion.evaluate(np.array(times, dtype=float))[1][:, 1]
+    assert np.abs(found - expected).max() < 1e-14
 
 
 @pytest.fixture

@@ -92,7 +92,7 @@ def test_a_proposal_that_is_not_proven_is_refused():
     data = source.claims[claim.id]
     with pytest.raises(InputError, match="expected a formula that is true"):
         finding_of(data, claim, True, _entry(left="Matrix([[phi], [theta], [theta]])"))
-    with pytest.raises(InputError, match=r"expected a correction of a part .* \(left\), got one of 'right'"):
+    with pytest.raises(InputError, match=r"expected a correction of left, .*, got a correction of 'right'"):
         finding_of(data, claim, True, _entry(right="Matrix([[phi], [theta], [phi]])"))
 
 

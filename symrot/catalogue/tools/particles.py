@@ -46,5 +46,6 @@ INERTIA = over_particles(lambda m, r: Matrix(inertia_of_point(m, r)))
 NAMES: dict[str, Any] = {"m_i": ANY_MASS, "r_i": ANY_PLACE, COUNT: _sum_of}
 """Names in the LaTeX of a step -> what they mean, an argument of :meth:`symrot.proof.derivation.Derivation.notation`.
 
-``m_i`` and ``r_i`` are mass and position of particle i; the sum sign ``\\sum_i`` sums the parentheses after it.
+``m_i`` and ``r_i`` are mass and position of particle i. The sum sign ``\\sum_i`` sums the expression in the parentheses
+after it over the three particles.
 """

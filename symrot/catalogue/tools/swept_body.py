@@ -20,8 +20,9 @@ V, X, R, KAPPA = Symbol("v"), Symbol("x"), Symbol("r"), Symbol("kappa")
 def far(d: Derivation) -> None:
     """Add steps to the derivation ``d``: recurrences for the power series that are used far from resonance.
 
-    Far from resonance, the linearly growing rate Omega is far from zero. The series give a vector that is fixed in
-    space, and the small angle by which the rotation about this vector exceeds the phase.
+    Far from resonance, the linearly growing rate Omega about the axis of the body is far from zero. The series give a
+    vector that is fixed in space, and a small angle: the angle of rotation about this vector minus the phase, which is
+    the integral of ``sqrt(Omega^2 + W^2)`` with the constant rate W about an axis normal to the body's axis.
     """
     d.section("The coefficients far from resonance")
     _vector(d)
@@ -168,7 +169,12 @@ def near(d: Derivation) -> None:
 
 
 def weak(d: Derivation) -> None:
-    """Add steps to the derivation ``d``: under a weak torque the phase, an angle in rad, is a power series in time."""
+    """Add steps to the derivation ``d``: under a weak torque the phase, an angle in rad, is a power series in time.
+
+    The phase is the integral of ``sqrt(Omega^2 + W^2)`` since the start, with the linearly growing rate Omega about the
+    axis of the body and the constant rate W about an axis normal to it. The torque is weak if it changes Omega by a
+    small part of this root.
+    """
     d.section("A weak torque")
     h, c = Symbol("h"), Symbol("c")
     f = sqrt(1 + 2 * c * h + h**2)
@@ -258,7 +264,8 @@ def _by_legendre(c: Expr) -> dict[Symbol, Expr]:
 def between(d: Derivation) -> None:
     """Add steps to the derivation ``d``: a formula for the integral of ``sqrt(Omega^2 + W^2)`` between two times.
 
-    The formula is a sum of two positive terms, so no digits cancel. The integral is the growth of the phase.
+    Omega is the linearly growing rate about the axis of the body, and W the constant rate about an axis normal to it.
+    The formula is a sum of two positive terms, so no digits cancel.
     """
     d.section("Between two times")
     omega, start, speed, there, across = (Symbol(name) for name in ("Omega", "Omega_0", "S", "S_0", "W"))

@@ -64,7 +64,11 @@ def is_consistent(renaming: Sequence[tuple[str, str]], fixed: bool = False) -> b
 
 @cache
 def _pair_of_quantities(known: str, new: str) -> tuple[str, str]:
-    """Return (phi, psi) for ``dphi`` and ``diff(psi(t), t)``; the given names if ``new`` is no rate and no ``x(t)``."""
+    """Return the quantities of which both names are rates: (phi, psi) for ``dphi`` and ``diff(psi(t), t)``.
+
+    A function of time counts as its quantity: ``psi(t)`` as psi. If ``new`` is neither a rate nor a function of time,
+    return both names as they are.
+    """
     quantity = quantity_of(new)
     return (quantity_of(known), quantity) if quantity != new else (known, new)
 
@@ -103,11 +107,12 @@ def _keeps_time_order(renaming: Mapping[str, str]) -> bool:
 
 
 def component(known: str, quantity: str) -> list[tuple[str, str]]:
-    """Return a list of at most one pair, by which `is_consistent` compares the axes of a formula's name and a quantity.
+    """Return [("component_2", "H_y")] if ``known`` is "second component of .." and ``quantity`` is "H_y".
 
-    For ``known`` = "second component of .." and ``quantity`` = "H_y", return [("component_2", "H_y")]. A name with
-    "(parallel-axis theorem), y axis" gives ("component_y", quantity). Other names, and a quantity without an axis in
-    its name, give [].
+    ``known`` is the name of a known formula. `is_consistent` compares the axes in pairs of names; with this pair, it
+    also compares the axis in the formula's name with the axis of the quantity. A formula's name that contains
+    "(parallel-axis theorem), y axis" gives [("component_y", quantity)]. Other names give [], and so does a quantity
+    without an axis in its name.
     """
     # a moment of inertia by the parallel-axis theorem has an axis, too
     parallel = re.search(r"\(parallel-axis theorem\), ([xyz]) axis", known)

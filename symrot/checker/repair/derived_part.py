@@ -54,7 +54,8 @@ def _scaled(claim: Claim, factors: Sequence[Node], matrix: Node) -> Node | None:
     """Return the product of ``factors``, the left side of the claim, changed so that it equals the right side.
 
     The factor ``matrix`` gets new entries; a number among the factors may change too. Return None if ``matrix`` and
-    the right side differ in shape, or if ``diag`` would need an entry off the diagonal.
+    the right side differ in shape, or if ``matrix`` is written with ``diag`` and an entry off the diagonal would not be
+    zero.
     """
     values, shape = flatten(claim.equation.right)
     if shape != flatten(claim.interpreter().read(matrix))[1]:
@@ -85,7 +86,10 @@ def _largest_factor(entries: Sequence[Expr]) -> Any:
 
 
 def _with_entries(claim: Claim, matrix: Node, entries: Sequence[Expr]) -> Node | None:
-    """Return the written-out ``matrix`` with other entries; None if ``diag`` would need one off the diagonal."""
+    """Return the written-out ``matrix`` with the given entries, row by row.
+
+    Return None if ``matrix`` is written with ``diag`` and an entry off the diagonal is not zero.
+    """
     cells = matrix_entries(matrix)
     if any(entry != 0 and place not in cells for place, entry in enumerate(entries)):
         return None

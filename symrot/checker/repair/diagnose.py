@@ -58,10 +58,11 @@ The corrected claim, such as ``a == a``, says nothing, and so is not offered as 
 """
 
 AS_NEAR = 0.35
-"""Largest difference in cost between two formulas that count as about equally near to the claim.
+"""Largest difference in cost between two edits of a claim that count as about equally probable.
 
-A proven repair is offered only if it costs at most this much more than the cheapest edit that makes both sides the same
-formula. Another notation of a repair is offered only if it costs at most this much more than the cheapest repair.
+If an edit turns the claim into a formula such as ``a == a``, which says nothing, it is not offered; but repairs are
+offered only if they cost at most this much more, since they are less probable otherwise. A formula that equals a repair
+and is written in another way is offered too, if it costs at most this much more than the cheapest repair.
 """
 
 MOST_COSTLY = 9.0
@@ -179,8 +180,8 @@ class _Search:
         numeric = self.numeric
         for place in numeric.places:
             tree = numeric.tree_at(place)
-            opened = numeric.open_paths(place, tree)
-            edits = single_edits(tree, numeric.names, numeric.functions, numeric.is_matrix, numeric.moving, opened)
+            is_tried = numeric.tried_paths(place, tree)
+            edits = single_edits(tree, numeric.names, numeric.functions, numeric.is_matrix, numeric.moving, is_tried)
             for edit in islice(edits, MOST_EDITS):
                 if numeric.sensible(place, edit.tree):
                     yield Change(place, edit)

@@ -85,7 +85,7 @@ def _entry_edit(numeric: NumericFilter, cell: Node, targets: Sequence[float]) ->
 def merged(tree: Node, first: Edit, second: Edit) -> Node | None:
     """Return ``tree`` with both edits, made in different parts of it; None if one part contains the other.
 
-    None also if the first edit moves or changes the part of the second.
+    Return None also if the first edit moves or changes the part that the second edit applies to.
     """
     a, b = first.path, second.path
     if not a or not b or a[: len(b)] == b or b[: len(a)] == a:

@@ -154,14 +154,15 @@ class NumericFilter:
             wrong |= {place for place, equal in enumerate(agreement or ()) if not equal}
         return wrong
 
-    def open_paths(self, place: str, tree: Node) -> "OpenEntries":
-        """Return a function that tells whether one edit of the part of ``tree`` at a path could make the claim true.
+    def tried_paths(self, place: str, tree: Node) -> "TriedPaths":
+        """Return a function of a path: whether an edit of the part of ``tree`` at this path could make the claim true.
 
-        It returns False in an entry of a written-out matrix, unless this entry is the only wrong one.
+        ``tree`` is the side or definition ``place`` of the claim. If it is a matrix with several wrong entries, an edit
+        of one entry cannot correct them all; so the function returns False for each path into an entry.
         """
         cells = matrix_entries(tree) if place in SIDES else {}
-        alone = [cells[number] for number in self.wrong if number in cells] if len(self.wrong) == 1 else []
-        return OpenEntries(tuple(cells.values()), tuple(alone))
+        only_wrong = [cells[number] for number in self.wrong if number in cells] if len(self.wrong) == 1 else []
+        return TriedPaths(tuple(cells.values()), tuple(only_wrong))
 
     # -- values -----------------------------------------------------------------------------------------------------
 
@@ -254,16 +255,16 @@ class NumericFilter:
 
 
 @dataclass(frozen=True)
-class OpenEntries:
-    """The entries of a written-out matrix (``cells``), and those that a single edit may change (``alone``)."""
+class TriedPaths:
+    """A function of a path in a tree: whether an edit of the part at this path could make the claim true."""
 
-    cells: tuple[Path, ...]
-    alone: tuple[Path, ...]
+    cells: tuple[Path, ...]  # paths of the entries, if the tree is a written-out matrix
+    only_wrong: tuple[Path, ...]  # path of the only wrong entry; empty if several entries are wrong
 
     def __call__(self, path: Path) -> bool:
-        """Return whether the part at a path may be changed: it is in no matrix entry, or in the only wrong one."""
+        """Return whether the part at a path is in no matrix entry, or in the only wrong one."""
         inside = next((cell for cell in self.cells if path[: len(cell)] == cell), None)
-        return inside is None or inside in self.alone
+        return inside is None or inside in self.only_wrong
 
 
 def _named(trees: Sequence[Node]) -> set[tuple[str, bool]]:

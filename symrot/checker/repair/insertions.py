@@ -41,7 +41,10 @@ MOST_LETTERS = 240
 """The largest number of characters in a term that a repair may add to a side of a claim."""
 
 MOST_TERMS_READ, MOST_ROOTS_READ = 1000, 12
-"""Largest numbers of terms and of roots in left side minus right side; a longer difference is not a missing term."""
+"""Largest numbers of terms and of roots in left side minus right side for the search for a missing term.
+
+The missing term is computed from this difference. If the difference is longer, no missing term is looked for.
+"""
 
 
 def missing_terms(numeric: NumericFilter) -> Iterator[Candidate]:
@@ -162,10 +165,11 @@ def exchanged_definitions(numeric: NumericFilter) -> Iterator[Candidate]:
 
 
 def _term(residual: Any, piece: Node | None) -> Node | None:
-    """Return ``residual``, the difference of the claim's sides, as the tree of one short term; None if it is longer.
+    """Return ``residual``, the difference of the claim's sides, as the tree of one short term.
 
-    None also if it has no letters, or letters in a denominator. ``piece`` is the formula to which the term is to be
-    added. A term with a sum in brackets may be at most half as long as this formula, unless the formula is 0.
+    Return None if it is not one term or too long, and if it has no letters, or letters in a denominator. ``piece`` is
+    the formula to which the term is to be added. A term with a sum in brackets may be at most half as long as this
+    formula, unless the formula is 0.
     """
     above, below = residual.as_numer_denom()
     if not below.is_number or not residual.free_symbols:

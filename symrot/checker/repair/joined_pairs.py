@@ -20,7 +20,7 @@ MOST_JOINED = 400
 DIGITS = 8
 """Number of decimals to which the effects of edits (changes of left - right, or of left/right) are compared.
 
-Before, they are divided by the largest number in the effect that two edits must have together.
+Before the comparison, each effect is divided by the largest number in the effect that makes the sides equal.
 """
 
 Values = tuple[float, ...]

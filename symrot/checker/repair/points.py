@@ -53,11 +53,10 @@ __all__ = ["Point", "UndefinedValue", "agree", "entries_of", "points"]
 DERIVATIVES = 6
 """Number of values for a function of time at a test point: its own value and those of its derivatives up to order 5."""
 
-HEAVIEST = 3**5
-"""Largest ``weight`` (cost of a multiplication) of a `Point` from which a derivative can be computed.
+MOST_NESTED = 6
+"""The largest number of nested derivatives: ``diff(diff(f, x), y)`` has two.
 
-A derivative is computed at a copy of the point with dual numbers, whose weight is three times that of the point. So at
-most six derivatives inside each other are possible.
+Each of them is computed at a copy of the test point with dual numbers, which triples the cost of a multiplication.
 """
 
 GAUSS = {1: 20, 2: 18, 3: 16}
@@ -133,11 +132,11 @@ class Point:
         """Return a copy of the point that evaluates ``name`` by the formula ``node`` instead of its definition."""
         return Point(self.symbols, self.functions, {**self.definitions, name: node}, spent=self.spent)
 
-    def raised(self, variable: Node) -> "Point":
+    def with_slopes(self, variable: Node) -> "Point":
         """Return a copy of the point whose values are dual numbers; their slopes are derivatives by ``variable``.
 
         The variable is a symbol, ``f(t)`` or ``diff(f(t), t)``. Raise UndefinedValue if it has no value at the point,
-        or if derivatives inside each other have raised the point's ``weight`` above HEAVIEST.
+        or if the copy would be for more than MOST_NESTED nested derivatives.
         """
         order = 0
         inner = variable
@@ -146,9 +145,9 @@ class Point:
             inner = inner.args[0]
         name = inner.value
         key = (name, order)
-        if self.weight > HEAVIEST:
+        if self.weight >= 3**MOST_NESTED:
             raise UndefinedValue(
-                "expected fewer derivatives inside each other, as diff(f, x) is in diff(diff(f, x), y), got too many"
+                f"expected at most {MOST_NESTED} nested derivatives (diff(diff(f, x), y) has two), got more"
             )
         if key not in self.lifted:
             in_time = name == "t" and not order
@@ -261,7 +260,7 @@ def _differentiated(point: Point, formula: Node, variables: Sequence[Node]) -> A
     if last.kind == "number":
         rest = [*rest, *[rest[-1]] * (int(last.value) - 1)]
         return _differentiated(point, formula, rest)
-    lifted = _differentiated(point.raised(last), formula, rest)
+    lifted = _differentiated(point.with_slopes(last), formula, rest)
     return mapped(lambda entry: entry.slope if isinstance(entry, Dual) else 0.0, lifted)
 
 
@@ -414,7 +413,7 @@ def _onto_hypotheses(point: Point, hypotheses: Sequence[tuple[Node, Node]]) -> P
                 residuals += entries_of(difference)
                 columns = []
                 for variable in variables:
-                    lifted = point.raised(variable)
+                    lifted = point.with_slopes(variable)
                     change = plus(lifted.value(left), mapped(minus, lifted.value(right)))
                     columns.append(entries_of(mapped(lambda x: x.slope if isinstance(x, Dual) else 0.0, change)))
                 slopes += list(zip(*columns, strict=True))

@@ -78,7 +78,9 @@ def needed(value: Any, shape: tuple[int | None, int | None] = (None, None)) -> R
     """
     actual = shape_of(value)
     if actual is None or any(size not in (None, got) for size, got in zip(shape, actual, strict=True)):
-        raise UndefinedValue(f"expected a matrix with the rows and columns {shape} (None: any number), got {actual}")
+        rows_wanted, columns_wanted = ("any number" if size is None else size for size in shape)
+        got = "a number" if actual is None else f"{actual[0]} x {actual[1]} entries"
+        raise UndefinedValue(f"expected a matrix (rows: {rows_wanted}, columns: {columns_wanted}), got {got}")
     rows: Rows = value
     return rows
 

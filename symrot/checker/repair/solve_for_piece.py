@@ -193,11 +193,11 @@ def solutions(numeric: NumericFilter) -> list[Candidate]:
     candidates: list[Candidate] = []
     for place in numeric.places:
         tree = numeric.tree_at(place)
-        opened = numeric.open_paths(place, tree)
+        is_tried = numeric.tried_paths(place, tree)
         for path, piece, term in _pieces(tree):
             if not numeric.affordable():
                 break
-            if not opened(path):
+            if not is_tried(path):
                 continue
             if numeric.is_matrix(piece):
                 candidates += _of_matrix(numeric, vocabulary, place, path, piece)

@@ -56,8 +56,8 @@ def _single(numeric: NumericFilter) -> Iterator[Candidate]:
     """Yield the single edits that make a claim true at the test points."""
     for place in numeric.places:
         tree = numeric.tree_at(place)
-        opened = numeric.open_paths(place, tree)
-        edits = single_edits(tree, numeric.names, numeric.functions, numeric.is_matrix, numeric.moving, opened)
+        is_tried = numeric.tried_paths(place, tree)
+        edits = single_edits(tree, numeric.names, numeric.functions, numeric.is_matrix, numeric.moving, is_tried)
         for edit in islice(edits, MOST_EDITS):
             change = Change(place, edit)
             if numeric.sensible(place, edit.tree) and numeric.holds([change]):

@@ -109,8 +109,9 @@ def _on_inertia_matrix(claim: Claim, verdict: Verdict) -> Verdict:
 def _with_two_meanings(claim: Claim, verdict: Verdict) -> Verdict:
     """Return the verdict on a claim that uses a letter for two quantities: ``L = T - V`` after a line ``I = m L^2``.
 
-    For this verdict, L is renamed to L_1 in the earlier line. Return ``verdict`` if the left side is no such letter, or
-    if the claim is false with two meanings too.
+    For this verdict, L is renamed to L_1 in the earlier line. Return ``verdict`` if the left side is not a letter that
+    an earlier line uses and does not define, if this letter is also on the right side or the argument of a function in
+    an earlier line, or if the claim is false with two meanings too.
     """
     assert claim.relation is not None
     _, left, right = claim.relation

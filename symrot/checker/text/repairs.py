@@ -25,8 +25,9 @@ CALLS_FOR_ARRAYS = ("qmul(", "eye(", "⊗", "\\otimes")
 def as_typed_repairs(repairs: Sequence[Repair], claim: Claim, notation: Notation) -> tuple[Repair, ...]:
     """Return ``repairs`` in the notation of the claim's text, each text once.
 
-    Left out are repairs that people would not write, and repairs that lack a formula which the claim writes in a short
-    form.
+    Left out are repairs that people would not write. If the claim's text writes a formula in a short form, such as
+    ``e^(theta K)`` for a rotation matrix, repairs that change this formula are left out too: the short form cannot
+    express the change.
     """
     typed = [
         repair if repair.code in AS_TYPED else in_notation(repair, claim, notation)

@@ -92,9 +92,9 @@ def _with_own_units(repair: Repair, measured: Measured, source: str) -> Repair:
 def beside_units(verdict: Verdict, source: str, decide: Callable[[str], Verdict]) -> Verdict:
     """Return the verdict "definition" on an equation with letters and a unit, such as ``F = m a = 6 N``.
 
-    The verdict is "false" if the end of the text has only numbers with units and is false, as in
-    ``F = m a = 2 N = 3 N``. For other texts, the argument ``verdict`` on ``source`` is returned. ``decide`` returns the
-    verdict on a text.
+    If the text ends with an equation between numbers with units, this equation is decided by itself. If it is false, as
+    2 N = 3 N in ``F = m a = 2 N = 3 N``, the verdict is "false". For other texts, the argument ``verdict`` on
+    ``source`` is returned. ``decide`` returns the verdict on a text.
     """
     unit = "" if verdict.recognised_as else unit_beside_letters(source)
     # an end such as 2 kg * 3 m/s^2 = 6 N is decided by itself; if it is false, the text is false

@@ -65,9 +65,10 @@ class WordReader:
         return (kind, start) in self.flips
 
     def products(self, alone: Collection[str], vectors: Collection[str]) -> dict[str, tuple[str, ...]]:
-        """Return the parts of each word that is read as a product: {"mgl": ("m", "g", "l")}.
+        """Return {word: its parts} for the words that are not read as one name: {"mgl": ("m", "g", "l")} for a product.
 
-        Also of a function whose raised digit was lost: {"sin2": ("sin", "^", "2")}.
+        {"sin2": ("sin", "^", "2")} is returned for a squared sine whose exponent became an ordinary digit when the text
+        was copied; in its less usual meaning, the sine of 2 x, ``sin2`` has the parts ("sin", "2").
         """
         words: dict[str, tuple[str, ...]] = {}
         short = {self.tokens[form.place].text for form in shorthands_of_letters(self.tokens)}
@@ -147,7 +148,8 @@ class WordReader:
         """Return tokens in which a Greek letter and an index after it, such as ω and p of ``ωp``, are one name omega_p.
 
         They are joined if ``ωp`` is the whole left side of an equation; also ``ωi`` and ``ωf`` anywhere, if both occur
-        (initial and final value). Where ``flips`` asks for the less usual meaning, they stay a product.
+        (initial and final value). The less usual meaning is the product ω p: a letter and an index whose key is in
+        ``flips`` are not joined.
         """
         padded = [None, *tokens]
         for place in range(len(tokens) - 3, -1, -1):
@@ -175,7 +177,7 @@ class WordReader:
 def _beside_quantities(tokens: Sequence[Token]) -> Iterator[tuple[str, str]]:
     """Yield pairs (quantity, name): a quantity alone on the left side of an equation, and each name after its sign =.
 
-    For ``I = Ic + m d^2`` they are (I, Ic), (I, m) and (I, d): Ic is then probably one name and no product I*c.
+    For ``I = Ic + m d^2`` they are (I, Ic), (I, m) and (I, d): Ic is then probably one name, not the product I*c.
     """
     quantity = ""
     for before, token, after in zip((None, *tokens), tokens, (*tokens[1:], tokens[-1]), strict=False):

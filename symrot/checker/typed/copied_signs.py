@@ -26,18 +26,22 @@ _WHERE = re.compile(
 )
 _BETWEEN = re.compile(r"\s(?:\\(?:text|mathrm|textrm)\{\s*and\s*\}|and)\s")
 _RAISED = re.compile("[⁰¹²³⁴⁵⁶⁷⁸⁹⁻]+")
+"""Pattern of superscript digits such as ², which LaTeX writes as ``^{2}``."""
+
 _FRACTION = re.compile("[½⅓⅔¼¾⅕⅖⅗⅘⅙⅚⅛⅜⅝⅞]")
-"""Patterns of raised digits (``_RAISED``) and of fractions such as ½, which LaTeX writes with commands."""
+"""Pattern of a fraction in one character such as ½, which LaTeX writes with ``\\frac``."""
 
 _SUBSCRIPT = re.compile(r"_\{(\w+)\}")
-
 
 _FACTORIAL = re.compile(r"(?<![\w.])([12]?\d|30)!(?![=!])")
 """Pattern of a factorial such as ``10!``; its group is the number, 30 at most."""
 
 
 def with_plain_signs(source: str) -> str:
-    r"""Return a copied text with plain signs, ``1500`` for ``1,500``; doubtful signs stay unchanged.
+    r"""Return a copied text in the notation that the readers of claims understand: ``1500`` in place of ``1,500``.
+
+    The head of this file lists the changes. A sign that may mean something else stays unchanged: a comma inside
+    brackets may separate arguments, and ≈ before a letter states no rounded value.
 
     Examples
     --------

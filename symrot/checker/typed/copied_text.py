@@ -91,10 +91,10 @@ def _without(pattern: re.Pattern[str], text: str) -> tuple[list[str], str]:
 
 
 def _clauses(text: str) -> tuple[str, list[str]]:
-    """Return ``text`` with blanks for clauses without an equation, such as "m is the mass", and the list of these
-    clauses.
+    """Return (the equations in ``text``, the clauses without an equation, such as "m is the mass").
 
-    In the text, a semicolon replaces each "and" between clauses, and blanks the words after an equation.
+    The equations keep their positions in ``text``: clauses without an equation, and words after an equation, are
+    overwritten with blanks. A semicolon replaces each "and" between clauses.
     """
     left_out: list[str] = []
 

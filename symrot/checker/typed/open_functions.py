@@ -224,8 +224,9 @@ class OpenFunctionsPart(Cursor):
     def derivative_by_time(self, token: Token, name: str, order: int, length: int) -> Node | None:
         """Return the derivative by t of the function ``name``, or of the factor after ``d/dt`` if ``name`` is empty.
 
-        ``length`` is the number of tokens of ``dx/dt`` or ``d/dt`` after its first one, ``token``. Return None if the
-        name is t, pi or a declared symbol, and for ``dx/dt`` in SymPy syntax, where it is a quotient of two names.
+        ``token`` is the first token of ``dx/dt`` or ``d/dt``, and ``length`` the number of its further tokens. Return
+        None if the name is t, pi or a declared symbol, and for ``dx/dt`` in SymPy syntax, where it is a quotient of two
+        names.
         """
         is_quotient = self.as_sympy and (token.text != "d" if name else order > 1)
         if is_quotient or name in ("t", "pi") or name in self.vocabulary.symbols:
@@ -241,8 +242,8 @@ class OpenFunctionsPart(Cursor):
     def derivative_by(self, token: Token, name: str, variable: Node, order: int, length: int) -> Node | None:
         """Return the derivative of ``name``, or of the factor after ``d/dx`` if ``name`` is empty, by ``variable``.
 
-        The variable is a symbol x or a rate x'. ``length`` is the number of tokens of ``dy/dx`` or ``d/dx`` after its
-        first one, ``token``. Return None if ``name`` is empty and no name, bracket, bar or root follows.
+        The variable is a symbol x or a rate x'. ``token`` is the first token of ``dy/dx`` or ``d/dx``, and ``length``
+        the number of its further tokens. Return None if ``name`` is empty and no name, bracket, bar or root follows.
         """
         after = self.token(length)
         if not name and not (after.text in ("(", "|", "√") or after.kind == "name"):

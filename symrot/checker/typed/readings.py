@@ -15,8 +15,10 @@ from symrot.errors import InputError
 __all__ = ["Chain", "Declared", "Reading", "Relation", "distinct_readings", "each_reading"]
 
 MOST_READINGS = 6
+"""The largest number of readings of one text on which a verdict is given."""
+
 MOST_DOUBTS = 40
-"""Largest number of readings of one text that are decided, and of its ambiguous pieces whose other meaning is tried."""
+"""The largest number of ambiguous pieces of one text whose less usual meaning is tried."""
 
 Relation = tuple[str, Node, Node]
 

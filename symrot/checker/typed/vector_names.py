@@ -1,4 +1,8 @@
-"""The names of vectors in a text, as its signs show them: cross products, hats, lengths and scalar products."""
+"""Which names in a text are vectors: signs show it, such as a hat, a cross product, or the bars of a length.
+
+An argument ``flips`` has the keys (kind, position) of the ambiguous signs and words of the text that are read in their
+less usual meaning.
+"""
 
 from collections.abc import Collection, Iterator, Sequence
 from itertools import pairwise
@@ -39,8 +43,9 @@ def _is_cross(before: Token | None, token: Token, after: Token, factor: Token, v
 def crossed(tokens: Sequence[Token], vectors: Collection[str], flips: Collection[tuple[str, int]]) -> Iterator[str]:
     """Yield the names next to the sign of a cross product, ``×`` or a letter x: they are vectors.
 
-    In a text with rates, yield also names in ``cross(a, b)`` and ``skew(a)``. A letter x with a key ("cross", position)
-    in ``flips`` is a name in this reading of the text, and no sign.
+    A letter x whose key ("cross", position) is in ``flips`` is read as a name, not as this sign. If the text has time
+    derivatives written with dots or primes, also yield the names in ``cross(a, b)`` and ``skew(a)``, which would become
+    functions of time otherwise.
     """
     alone = set(names_alone(tokens, vectors))
     padded = [*tokens, tokens[-1]]

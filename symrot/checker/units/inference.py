@@ -153,10 +153,11 @@ class UnitInference:
         return bool(self.units) or any(unit not in (None, "rad") for unit in units)
 
     def values_of(self, rows: Rows, node: Node) -> Rows:
-        """Return the dimensions of the entries of a matrix of numbers, unknown for entries other than zero.
+        """Return the dimensions of the entries of ``node``, a matrix of numbers whose units may have been left out.
 
-        The author may have left out the units. If all numbers are 0 or 1, ``rows``, the dimensions of pure numbers, are
-        returned unchanged.
+        ``rows`` has the dimension of a pure number for each entry, and ZERO for each entry 0. If all numbers are 0 or
+        1, return ``rows``. Otherwise each entry may have lacked its unit, as 2 for 2 kg: return a new unknown dimension
+        for each entry, and ZERO for each entry 0.
         """
         if _is_unit(node):
             return rows  # zeros and ones are pure numbers, but 2 may be 2 kg

@@ -358,7 +358,8 @@ static void prepare_attitude(const canonical_motion *c, dd real, dd imag, dd lea
  *                             along the principal axes, and the motion is returned in the axes of the body
  * out  f                      the constants
  *
- * Domain: moments positive and finite, |omega| finite. Components of omega below 1e-150 of the largest count as zero.
+ * Domain: moments positive and finite, |omega| finite. Components of omega below 1e-150 of the largest count as zero,
+ * except about the middle axis, where rotation is unstable: there they are outside the domain.
  * Returns 0; 1 if the numbers are outside this domain; 2 if the compiler has broken error-free arithmetic.
  */
 int symrot_free_body_prepare(
@@ -411,6 +412,11 @@ int symrot_free_body_prepare(
     for (int i = 0; i < 3; ++i)
         steady = steady && !(differences[i].hi != 0.0 && w[(i + 1)%3].hi != 0.0 && w[(i + 2)%3].hi != 0.0);
     if (steady) {
+        for (int i = 0; i < 3; ++i) {
+            const int middle = differences[(i + 1)%3].hi*differences[(i + 2)%3].hi > 0.0;
+            if (middle && w[i].hi != 0.0 && (omega[2*((i + 1)%3)] != 0.0 || omega[2*((i + 2)%3)] != 0.0))
+                return 1;
+        }
         prepare_steady(w, q0, &frame, omega_scale, f);
         return 0;
     }

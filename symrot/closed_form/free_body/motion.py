@@ -189,7 +189,8 @@ def _prepared(
         "free_body",
         (moments, omega, start, exact, axes),
         lambda: (
-            "free body: expected three positive moments of inertia in kg m^2, a finite angular velocity in rad/s and a "
-            f"quaternion that is not zero, got moments {moments[::2]}, omega {omega[::2]}, quaternion {start[::2]}"
+            "free body: expected three positive moments of inertia in kg m^2, a finite angular velocity in rad/s "
+            "(about the middle axis exactly, or with another component above 1e-150 of the largest) and a quaternion "
+            f"that is not zero, got moments {moments[::2]}, omega {omega[::2]}, quaternion {start[::2]}"
         ),
     )

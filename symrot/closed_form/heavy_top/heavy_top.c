@@ -4,6 +4,9 @@
 #include "nutation.h"
 #include "series.h"
 
+/* Nearer to the unstable upright position, inputs of 31 digits do not determine when the top falls. */
+#define NEAR 1e-29
+
 /* The nome is at most 0.075 (where m = 0.7): nome^(n^2) is below 1e-40 from n = 6 on. */
 enum { TERMS = 6 };
 
@@ -200,6 +203,7 @@ static dd in_turns(dd rate)
  * in   space[8]       1       unit quaternion from those axes to the space axes in which the motion is returned
  * in   axes[26]       1       NULL, or the matrix, row by row, and the unit quaternion from e1, e2, e3 to body axes
  * out  t                      the constants
+ * Domain: a start at the unstable upright position, or at least NEAR away from it: hypot(|beta|, |w1 + i w2|/scale).
  * Returns 0; 1 if the numbers are outside this domain; 2 if the compiler has broken error-free arithmetic.
  */
 int symrot_heavy_top_prepare(
@@ -238,20 +242,24 @@ int symrot_heavy_top_prepare(
     t->time_scale = scale;
 
     complex_dd alpha = complex_of(q[0], q[3]), beta = complex_of(q[1], q[2]);
+    const complex_dd across = complex_of(w[0], w[1]);
+    const dd w2 = square_of(across), weight = dd_scale(dd_scale(force, 1.0/scale), 1.0/scale), spin = dd_mul(shape, w[2]);
+    const double away = square_of(beta).hi + w2.hi; /* from the upright position at rest */
+    const int tilted = q[1].hi != 0.0 || q[2].hi != 0.0 || w[0].hi != 0.0 || w[1].hi != 0.0;
+    if (tilted && away < NEAR*NEAR && dd_less(dd_square(spin), dd_scale(weight, 4.0)))
+        return 1;
     if (square_of(alpha).hi < 1e-62)
         alpha = complex_of(dd_of(0.0), dd_of(0.0));
     if (square_of(beta).hi < 1e-62)
         beta = complex_of(dd_of(0.0), dd_of(0.0));
-    const complex_dd across = complex_of(w[0], w[1]);
     const complex_dd lever = times(complex_of(alpha.re, dd_negative(alpha.im)), beta); /* sin theta exp(-i psi)/2 */
     const complex_dd motion = times(across, complex_of(dd_scale(lever.re, 2.0), dd_scale(lever.im, -2.0)));
-    const dd w2 = square_of(across);
     nutation n;
     n.s = dd_scale(square_of(beta), 2.0);
     n.c = dd_scale(square_of(alpha), 2.0);
-    n.pull = dd_scale(dd_scale(force, 1.0/scale), 1.0/scale);
+    n.pull = weight;
     n.axial_rate = w[2];
-    n.spin = dd_mul(shape, w[2]);
+    n.spin = spin;
     n.speed = motion.re;
     n.d = dd_sub(motion.im, dd_mul(n.spin, n.s));
     n.sigma = dd_add(motion.im, dd_mul(n.spin, n.c));

@@ -2,7 +2,7 @@
 
 All initial states are covered: hanging, upright, exactly vertical, passing through the vertical, near and on the
 separatrix of the sleeping top. Each sample takes the same time, however far it lies from the start, and its error is a
-few 1e-16. The formulas are in :file:`heavy_top.c`.
+few 1e-16. The formulas are in :file:`heavy_top.h`.
 
 Source: Klein & Sommerfeld, Theory of the Top, vol. 2, chapter 6; Whittaker, Analytical Dynamics, 4th ed., section 72.
 
@@ -123,8 +123,10 @@ class Top:
             "heavy_top",
             (self.moments, self.pull, flatten_pairs(named), frame.start(attitude), frame.space, frame.axes),
             lambda: (
-                "heavy top: expected positive moments in kg m^2, a finite angular velocity in rad/s and a quaternion "
-                f"that is not zero, got moments {[float(x) for x in self._inertia]}, omega {[float(x) for x in named]}"
+                "heavy top: expected positive moments in kg m^2, a finite angular velocity in rad/s, a quaternion that "
+                "is not zero, and a start that is not within 1e-29 rad of the unstable upright position, except "
+                "exactly there (method='taylor' computes such motions), got moments "
+                f"{[float(x) for x in self._inertia]}, omega {[float(x) for x in named]}"
             ),
         )
 

@@ -81,6 +81,10 @@ class PortableFreeBody:
             differences = vector(exact[:6])
             defect = number(exact[6], exact[7]) * (max(moments) * fastest / self.scale) ** 2
         if not any(differences[i] and w[i - 2] and w[i - 1] for i in range(3)):
+            for i, rate in enumerate(w):  # rotation about the middle axis is unstable
+                middle = differences[i - 2] * differences[i - 1] > 0
+                if middle and rate and sum(x != 0 for x in vector(omega)) > 1:
+                    raise ValueError("expected components of omega of moderate ratios")
             self._steady(w, start, frame)
             return
         self._elliptic(moments, w, differences, defect, start, frame)

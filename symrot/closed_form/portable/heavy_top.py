@@ -1,7 +1,7 @@
 """The motion of a symmetric heavy top, computed by mpmath and NumPy without a C compiler.
 
 The formulas are those of :file:`heavy_top.h`. The Cayley-Klein parameters of the attitude, alpha = q0 + i q3 and
-beta = q1 + i q2, are quotients of theta series. Numbers have 120 digits, so the constants are computed directly from
+beta = q1 + i q2, are quotients of theta series. Numbers have 160 digits, so the constants are computed directly from
 the roots of the cubic, without the rearrangements that doubles need.
 """
 
@@ -12,7 +12,6 @@ from mpmath import mp, mpc, mpf
 
 from symrot.closed_form.build import Floats
 from symrot.closed_form.portable.phases import (
-    DIGITS,
     SWITCH,
     TERMS,
     Phase,
@@ -28,8 +27,10 @@ from symrot.kinematics.hamilton import conjugate, hamilton
 
 __all__ = ["PortableHeavyTop"]
 
-EQUAL = mpf(10) ** -45  # closer roots count as equal: inputs have 31 digits, distances of roots half as many
+DIGITS = 160  # digits of the constants
+EQUAL = mpf(10) ** -70  # closer roots, relative to their size, count as equal: equal roots are found to about 80 digits
 NOTHING = mpf(10) ** -31  # size, relative to alpha or beta, that counts as zero
+NEAR = mpf(10) ** -29  # nearer starts to the unstable upright position are refused, as in heavy_top.c
 
 
 class PortableHeavyTop:
@@ -54,8 +55,11 @@ class PortableHeavyTop:
         w = [x / self.scale for x in w]
         q = unit(vector(quaternion))
         start = [mpc(q[0], q[3]), mpc(q[1], q[2])]  # alpha, beta
+        pull, spin = force / self.scale**2, c / a * w[2]
+        if 0 < abs(start[1]) ** 2 + w[0] ** 2 + w[1] ** 2 < NEAR**2 and spin**2 < 4 * pull:
+            raise ValueError("expected a start that is not so near to the unstable upright position")
         start = [mpc(0) if abs(x) < NOTHING else x for x in start]
-        self._prepare(c / a, force / self.scale**2, w, start)
+        self._prepare(c / a, pull, w, start)
 
     def _prepare(self, shape: Any, pull: Any, w: list[Any], start: list[Any]) -> None:
         alpha, beta = start
@@ -124,7 +128,7 @@ class PortableHeavyTop:
         self.regime = "separatrix" if endless else "hyperbolic"
         per = mp.pi / k_prime
         q = mpf(0) if endless else mp.exp(-per * k)
-        self.log_nome = -np.inf if endless else float(-per * k)
+        self.nome, self.log_nome = q, -np.inf if endless else float(-per * k)
         speed = per * rate / 2  # dv/dt
         numerators, kappas, slopes, even_parts = [], [], [], []
         for i, (y, sign) in enumerate(zip(ys, signs, strict=True)):
@@ -160,35 +164,41 @@ class PortableHeavyTop:
                  sum((2 * n + 1) * q ** (n * (n + 1)) * mp.sinh((2 * n + 1) * v) for n in range(TERMS))]  # fmt: skip
         return numerators, kappas, leads, speed, v, below
 
+    def _orders(self, i: int) -> list[int]:
+        """Return the multiples n in the series of alpha (i = 0) or beta (i = 1): 1, 3, 5, .. or 0, 2, 4, .."""
+        odd = self.regime == "circular" or i == 0
+        return [2 * n + odd for n in range(TERMS)]
+
+    def _signs(self, i: int) -> tuple[int, int]:
+        """Return the signs (a, b) of the derivatives f' = a n g and g' = b n f in :meth:`_functions`."""
+        if self.regime != "circular":
+            return 1, 1
+        return (1, -1) if i == 0 else (-1, 1)
+
     def _functions(self, i: int, place: Any) -> tuple[list[Any], list[Any], list[Any], list[Any]]:
         """Return the functions in the theta series of a Cayley-Klein parameter, at the argument ``place``.
 
         i = 0 means alpha = q0 + i q3, i = 1 means beta = q1 + i q2. The argument is an angle z if ``regime`` is
-        "circular", otherwise v with z = i v. The four lists are the functions in the series of the real part and of the
-        imaginary part, then their derivatives. For alpha and an angle z they are sin(n z), cos(n z), n cos(n z) and
+        "circular", otherwise v with z = i v. The four lists are the functions f in the series of the real part and g of
+        the imaginary part, then their derivatives. For alpha and an angle z they are sin(n z), cos(n z), n cos(n z) and
         -n sin(n z) with n = 1, 3, 5, ..
         """
-        odd = (
-            [2 * n + 1 for n in range(TERMS)] if self.regime == "circular" or i == 0 else [2 * n for n in range(TERMS)]
-        )
-        # the terms are sin(n z) and cos(n z)
-        if self.regime == "circular":
-            sines, cosines = [mp.sin(o * place) for o in odd], [mp.cos(o * place) for o in odd]
-            up, down = (
-                [o * x for o, x in zip(odd, cosines, strict=True)],
-                [-o * x for o, x in zip(odd, sines, strict=True)],
-            )
-            return (sines, cosines, up, down) if i == 0 else (cosines, sines, down, up)
-        # the terms are sinh(n v) and cosh(n v) times powers of the nome
-        weights = self._weights(i)
-        sines = [x * mp.sinh(o * place) for x, o in zip(weights, odd, strict=True)]
-        cosines = [x * mp.cosh(o * place) for x, o in zip(weights, odd, strict=True)]
-        return (cosines, sines, [o * x for o, x in zip(odd, sines, strict=True)],
-                [o * x for o, x in zip(odd, cosines, strict=True)])  # fmt: skip
+        orders, weights = self._orders(i), self._weights(i)
+        sine, cosine = (mp.sin, mp.cos) if self.regime == "circular" else (mp.sinh, mp.cosh)
+        f = [x * cosine(o * place) for x, o in zip(weights, orders, strict=True)]
+        g = [x * sine(o * place) for x, o in zip(weights, orders, strict=True)]
+        if self.regime == "circular" and i == 0:
+            f, g = g, f
+        forward, back = self._signs(i)
+        return (f, g, [forward * o * x for o, x in zip(orders, g, strict=True)],
+                [back * o * x for o, x in zip(orders, f, strict=True)])  # fmt: skip
 
     def _weights(self, i: int) -> list[Any]:
+        """Return the factors of the functions: powers of the nome, or ones if ``regime`` is "circular"."""
+        if self.regime == "circular":
+            return [mpf(1)] * TERMS
         powers = [n * (n + 1) if i == 0 else n * n for n in range(TERMS)]
-        return [mp.exp(self.log_nome * x) if x else mpf(1) for x in powers]
+        return [self.nome**x for x in powers]
 
     def _scale_numerators(
         self, numerators: Any, kappas: Any, leads: Any, speed: Any, place: Any, below: Any, start: Any, across: Any,
@@ -217,12 +227,14 @@ class PortableHeavyTop:
             constants.append(constant * mp.expjpi(-2 * leads[i]))
         sizes = [abs(x) for x in constants]
         total = mp.hypot(*sizes)
-        self.terms = [
-            [float(x * size / total) for x in part]
-            for size, pair in zip(sizes, numerators, strict=True)
-            for part in pair
-        ]
-        self.kappas, self.speed = [float(x) for x in kappas], float(speed)
+        self.terms, self.rate_terms = [], []
+        for i, (size, (re, im)) in enumerate(zip(sizes, numerators, strict=True)):
+            forward, back = self._signs(i)
+            orders = [order * speed for order in self._orders(i)]
+            re_rate = [forward * o * a - kappas[i] * b for o, a, b in zip(orders, re, im, strict=True)]
+            im_rate = [back * o * b + kappas[i] * a for o, a, b in zip(orders, re, im, strict=True)]
+            self.terms += [[float(x * size / total) for x in part] for part in (re, im)]
+            self.rate_terms += [[float(x * size / total) for x in part] for part in (re_rate, im_rate)]
         units = [x / size if size else mpc(1) for x, size in zip(constants, sizes, strict=True)]
         self._maps(units[0], units[1], spin)
 
@@ -268,30 +280,25 @@ class PortableHeavyTop:
         if self.regime == "circular":
             sine, cosine = self.axial.circle(t)
             odd: list[Any] = multiples(sine, cosine)[1::2]
-            orders = range(1, 2 * TERMS, 2)
-            pairs: list[Any] = [[(s, c, o * c, -o * s) for (s, c), o in zip(odd, orders, strict=True)],
-                     [(c, s, -o * s, o * c) for (s, c), o in zip(odd, orders, strict=True)]]  # fmt: skip
-            return (*self._summed(pairs), none)
+            return (*self._summed([odd, [(c, s) for s, c in odd]]), none)
         separatrix = self.regime == "separatrix"
         whole, flip, v = self.axial.argument_once(t) if separatrix else self.axial.argument(t, self.stretch)
 
-        def term(weight: int, order: int) -> tuple[Any, ...]:
-            c, s = (flip * part for part in hyperbolic(self.log_nome, weight, order, v))
-            return c, s, order * s, order * c
+        def term(weight: int, order: int) -> list[Any]:
+            return [flip * part for part in hyperbolic(self.log_nome, weight, order, v)]
 
         pairs = [[term(n * (n + 1), 2 * n + 1) for n in range(TERMS)], [term(n * n, 2 * n) for n in range(TERMS)]]
         return (*self._summed(pairs), whole)
 
     def _summed(self, pairs: Any) -> tuple[Any, Any]:
+        """Return ([alpha, beta], [their time derivatives]) from the values of f and g in :meth:`_functions`."""
         values, rates = [], []
         for i, functions in enumerate(pairs):
-            re, im = self.terms[2 * i], self.terms[2 * i + 1]
-            value, slope = 0.0, 0.0
-            for a, b, (f, g, df, dg) in zip(re, im, functions, strict=True):
-                value = value + (a * f + 1j * (b * g))
-                slope = slope + (a * df + 1j * (b * dg))
-            values.append(value)
-            rates.append(slope * self.speed + 1j * self.kappas[i] * value)
+            part = slice(2 * i, 2 * i + 2)
+            values.append(sum(a * f + 1j * (b * g) for a, b, (f, g) in zip(*self.terms[part], functions, strict=True)))
+            rates.append(
+                sum(a * g + 1j * (b * f) for a, b, (f, g) in zip(*self.rate_terms[part], functions, strict=True))
+            )
         return values, rates
 
 

@@ -115,7 +115,7 @@ def audit_step(
     progress("proving ..")
     if formula_section(name, rates, method, source) != data["formula"]:
         raise CertificateError(
-            f"{path}: expected 'formula' to be the proof that symrot now derives from the C text, got other content; "
+            f"{path}: expected in the section 'formula' the proof that symrot derives from the C text, got another; "
             "emit the step again"
         )
     report = [

@@ -41,7 +41,8 @@ def audit_elliptic(path: Path, data: Data, scene: SceneSource | None = None) -> 
     Raises
     ------
     CertificateError
-        If a file is not the one that symrot prints for the scene in the certificate, or violates the equations.
+        If a file is not the one that symrot prints for the scene in the certificate, or if the C text does not solve
+        the equations of motion at one of the tested states.
     """
     step = _step(path, data)
     if path.name != f"{step.name}.cert.json":
@@ -131,7 +132,10 @@ def _numbers(path: Path, bounds: Data, kind: str) -> dict[str, float]:
 
 
 def _same(path: Path, own: Data, data: Data) -> None:
-    """Raise CertificateError if a section of a certificate is not the one that symrot prints."""
+    """Raise CertificateError if the certificate ``data`` differs in a section from ``own``, which symrot prints.
+
+    Both map the name of each section to its content.
+    """
     for section in (*own, *data):
         if json.dumps(own.get(section), sort_keys=True) != json.dumps(data.get(section), sort_keys=True):
             raise CertificateError(

@@ -236,7 +236,8 @@ class ExactStepText(StepFiles):
     def _rate(self) -> Fraction:
         """The size of the angular velocities at which the certificate checks the equations, a power of two, rad/s.
 
-        For a top it is about sqrt(pull/A), so that both weight and rotation matter.
+        For a heavy top it is about sqrt(P/A): P, the parameter "pull", is the weight times the distance of the centre
+        of mass, and A the moment of inertia across the axis. At this rate, both weight and rotation matter.
         """
         names = [name for name, *_ in self.form.parameters]
         if "pull" not in names:

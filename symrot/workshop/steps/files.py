@@ -13,7 +13,7 @@ __all__ = ["StepFiles", "constant_table"]
 
 
 class StepFiles(KernelText):
-    """The texts of a time step, of any method."""
+    """The C files and the certificate of a time step, by whichever method: "rk4", "taylor", "dop853" or "exact"."""
 
     # comments in the C files state no error bounds; those of rk4 and taylor are in the certificate alone
     folders: ClassVar[Mapping[str, str]] = {}
@@ -41,8 +41,8 @@ class StepFiles(KernelText):
         """Return the C source and its header; ``bounds`` must be None, because their comments state no error bounds."""
         if bounds:
             raise InputError(
-                f"{self.name}: expected no bounds, because the C text of a time step states none; `symrot certify "
-                "SCENE --step METHOD --box NAME=LOW:HIGH` computes the bounds of its errors"
+                f"{self.name}: bounds: expected None, because the C text of a time step states no bounds of errors, "
+                "got bounds; `symrot certify SCENE --step METHOD --box NAME=LOW:HIGH` prints them in the certificate"
             )
         return self._source_and_header
 

@@ -50,22 +50,24 @@ MOST_SOLVED = 4
 """The largest number of letters for which an equation is solved, each time to compare it with known relations."""
 
 PER_NAME = 0.1
-"""Added to the cost of a known formula for each of its symbols that has another letter in the claim.
+"""Added to the cost of a repair for each symbol of the known formula that has another letter in the claim.
 
-The cost ranks the known formulas that differ from the claim by one fault: the claim probably means the cheapest one.
+A repair turns the claim into a known formula. It costs more the less usual its fault is and the less the known formula
+resembles the claim. The repairs are ranked by their costs: the author probably meant the formula of the cheapest one.
 """
 
-PER_PLACE = 0.3
-"""Added to the cost of a known formula for each contradiction between its name and the name of the claimed quantity.
+PER_MISFIT = 0.3
+"""Added to the cost of a repair for each contradiction between the names of the known formula and of the quantity.
 
-For instance, "first component of .." contradicts omega_3. `PER_NAME` describes the cost.
+For instance, the name "first component of .." contradicts the quantity omega_3. `misfit_of` counts the contradictions;
+`PER_NAME` describes the cost.
 """
 
 AS_NEAR = 0.15
-"""The largest difference in cost at which a claim counts as a moment of inertia about a parallel axis, not as faulty.
+"""The extra cost that a repair may have for a claim I + m d^2 to count as a right formula about a parallel axis.
 
-Such a claim equals a known moment plus m d^2, which looks like a fault. The cost of changing the claim to this moment
-may exceed the cost of changing it to the likeliest known moment by this number.
+The claim equals a known moment of inertia I plus m d^2, which looks like I with a fault. If the repair that turns the
+claim into I costs at most this much more than the likeliest repair, no known moment of a body is offered as a repair.
 """
 
 MOST_REPAIRS = 3
@@ -186,9 +188,11 @@ def _is_norm(side: Node, other: Node) -> bool:
 
 
 def formulas_nearby(claim: Claim, named: NamedFormula) -> list[Near]:
-    """Return the known formulas for the claim's quantity that differ from its formula by one fault, likeliest first.
+    """Return repairs of the claim's formula, each with the known formula that it gives, the likeliest first.
 
-    A few differ by two wrong signs. A single result with the code "none" does not differ at all.
+    Each repair changes one part of the formula, a few change two signs; its ``code`` names the fault. If the formula
+    contains the root of a sum and has the values of a known formula as it stands, the list has at most one entry, with
+    the code "none".
     """
     words, plain = words_of(named), quantity_name(named)
     nearby = [
@@ -196,7 +200,7 @@ def formulas_nearby(claim: Claim, named: NamedFormula) -> list[Near]:
         for near in near_formulas(claim, named, lambda known: has_word(known.name, words))
         if not has_other_length(near.known.name, near.renaming)
     ]
-    nearby.sort(key=lambda near: near.cost + PER_NAME * near.renamed + PER_PLACE * misfit_of(plain, near.known.name))
+    nearby.sort(key=lambda near: near.cost + PER_NAME * near.renamed + PER_MISFIT * misfit_of(plain, near.known.name))
     return nearby
 
 

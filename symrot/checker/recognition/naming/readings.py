@@ -27,16 +27,17 @@ __all__ = [
 ]  # fmt: skip
 
 LEAST_SYMBOLS = 2
-"""The smallest number of symbols in an unedited scalar formula that is looked up among the known formulas.
+"""The smallest number of symbols in a scalar formula of a claim that is looked up among the known formulas.
 
-One symbol suffices if the quantity's name has a usual meaning, such as I_zz.
+The formula is looked up as the author wrote it; a formula that results from an edit must have more symbols. One symbol
+suffices if the quantity's name has a usual meaning, such as I_zz.
 """
 
 LEAST_SYMBOLS_RELATED = 5
 """The smallest number of symbols in an equation that is compared with known relations (equations between quantities).
 
-An equation with fewer symbols may equal one by chance. The limit is LEAST_SYMBOLS if the context says what all letters
-mean, or for an unedited claim whose quantity has a name without usual meaning.
+An equation with fewer symbols may equal one by chance. LEAST_SYMBOLS suffice in two cases: if the context says what all
+letters mean, and for the author's own formula of a quantity whose name has no usual meaning.
 """
 
 LEAST_SYMBOLS_OF_MOTION = 3
@@ -76,13 +77,16 @@ def least_symbols_related(left: Node, right: Node) -> int:
 def readings_of_claim(
     claim: Claim, named: NamedFormula, tree: Node, least_symbols: int, interpreter: Interpreter | None = None
 ) -> tuple[Identification, ...]:
-    """Return the known formulas, or else relations, that a claim with the right side ``tree`` can mean.
+    """Return the known formulas that a claim with the right side ``tree`` can mean, the likeliest first.
 
-    The likeliest come first, MOST_READINGS at most.
+    If there are none, return the known relations (equations between quantities) that the whole claim can mean. At most
+    MOST_READINGS are returned.
 
-    A scalar formula with fewer than ``least_symbols`` symbols is compared with no known formula; `readings_of_formula`
-    has an exception. Relations have the limit `least_symbols_related`, or LEAST_SYMBOLS. ``interpreter`` turns trees
-    into SymPy values; by default, the claim makes it.
+    ``least_symbols`` is the smallest number of symbols of a scalar formula that is compared with known formulas:
+    LEAST_SYMBOLS if ``tree`` is the author's own formula, another number if it is the result of an edit. As an
+    exception, one symbol suffices in the author's own formula if the quantity's name has a usual meaning.
+    `LEAST_SYMBOLS_RELATED` tells how many symbols an equation needs that is compared with relations. ``interpreter``
+    turns trees into SymPy values; by default, the claim makes it.
     """
     interpreter = claim.interpreter() if interpreter is None else interpreter
     solved: tuple[Identification, ...] = ()
@@ -136,9 +140,9 @@ def readings_of_formula(
 ) -> tuple[Identification, ...]:
     """Return the likeliest known formulas for the claim's quantity that are equal to ``formula``.
 
-    Empty if ``formula`` cannot be read, or is a scalar with fewer than ``least_symbols`` symbols. In one case a single
-    symbol suffices: ``least_symbols`` is LEAST_SYMBOLS (for unedited formulas), and the quantity's name has a usual
-    meaning, such as I_zz.
+    Empty if ``formula`` cannot be read, or is a scalar with fewer than ``least_symbols`` symbols. If ``least_symbols``
+    is LEAST_SYMBOLS, as it is for the author's own formula, and the quantity's name has a usual meaning, such as I_zz,
+    a single symbol suffices.
     """
     try:
         value = claim.with_definitions((interpreter or claim.interpreter()).read(formula))
@@ -147,7 +151,7 @@ def readings_of_formula(
     if is_matrix(value) and value.shape == (1, 1):
         value = value[0]
     # one symbol suffices in the claim's own formula if books use the name for one thing, as I_zz;
-    # a short edited formula may equal a known one by chance
+    # a short formula that results from an edit may equal a known one by chance
     fewest = 1 if words_of(named) is not None and least_symbols == LEAST_SYMBOLS else least_symbols
     if not is_matrix(value) and len(value.atoms(Function, Symbol) - {time}) < fewest:
         return ()

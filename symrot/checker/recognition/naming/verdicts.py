@@ -1,8 +1,8 @@
 """Verdicts on claims such as ``I_zz == m/12*(a**2 + b**2)``, which only give a formula for a named quantity.
 
-Nothing in such a claim defines the left side; so the right side is compared with known formulas: those that symrot
-derives. The verdict is "recognised" if the right side equals a known formula, "doubtful" if it does after a single
-edit, and "definition" otherwise. The readings of a claim are the known formulas that it can mean.
+Nothing in such a claim defines the left side; so the right side is compared with known formulas, which symrot derives.
+The verdict is "recognised" if the right side equals a known formula, "doubtful" if it does after a single edit, and
+"definition" otherwise. The readings of a claim are the known formulas that it can mean.
 """
 
 import re
@@ -56,8 +56,8 @@ ENDS = {acos: (S.Zero, pi), asin: (-pi / 2, pi / 2), atan2: (-pi, pi)}
 def verdict_on_name(claim: Claim, named: NamedFormula, repair: bool) -> Verdict:
     """Return the verdict on a claim that only gives a formula for a named quantity.
 
-    With ``repair``, also look for a fault whose correction makes the formula a known one; the verdict then is
-    "doubtful", as it never is without ``repair``.
+    With ``repair``, also look for a fault whose correction makes the formula a known one. If there is one, the verdict
+    is "doubtful", which is given only with ``repair``.
 
     Raises
     ------

@@ -47,11 +47,12 @@ def _without_mark(name: str) -> tuple[str, str]:
     return name[: mark.start()], mark[0]
 
 
-def _numbered_angle(known: str, mine: str, other: str) -> str:
-    """Return the name that a claim with numbered angles has for the Euler angle ``known``.
+def _numbered_angle(known: str, beside: str, name: str) -> str:
+    """Return the name that a claim with numbered angles would have for the Euler angle ``known``, or its rate.
 
-    The claim has the name ``other`` for another Euler angle, ``mine``: where phi is theta_1, psi is theta_3. Return ""
-    if ``other`` does not end with the number of the angle ``mine``, counted from the first or from the last angle.
+    ``beside`` is another Euler angle (or rate), which the claim calls ``name``: if it calls phi theta_1, it would call
+    psi theta_3. Return "" if ``name`` does not end with the number of the angle ``beside``, counted from the first or
+    from the last angle, or if ``known`` or ``beside`` is no Euler angle.
 
     Examples
     --------
@@ -60,8 +61,8 @@ def _numbered_angle(known: str, mine: str, other: str) -> str:
     >>> _numbered_angle("dpsi", "theta", "theta_2"), _numbered_angle("psi", "phi", "omega_2")
     ('dtheta_3', '')
     """
-    place, own = ORDER.get(known.removeprefix("d")), ORDER.get(mine.removeprefix("d"))
-    stem, number = other.removeprefix("d" if mine.startswith("d") else "")[:-1], other[-1:]
+    place, own = ORDER.get(known.removeprefix("d")), ORDER.get(beside.removeprefix("d"))
+    stem, number = name.removeprefix("d" if beside.startswith("d") else "")[:-1], name[-1:]
     # numbered from the first rotation to the last or, as for aircraft, the other way round
     if place is None or own is None or number not in (own, str(4 - int(own))):
         return ""
@@ -73,8 +74,9 @@ def absent_name(known: str, renaming: dict[str, str | None], unused: Collection[
 
     The symbol belongs to a known formula with which the claim is compared; ``renaming`` maps symbols of that formula to
     the claim's names, or to None. The name is implied if other names of the claim show how the claim writes such
-    symbols: w_1 and w_2 imply w_3. These may also be ``unused`` letters, which stand for no symbol of the known
-    formula: I_1 implies I_3 for the moment of inertia C. Otherwise the name is that in ``USUAL``, or ``known``.
+    symbols: w_1 and w_2 imply w_3. ``unused`` are the claim's names that stand for no symbol of the known formula. They
+    can imply a name too: I_1 implies I_3 for the moment of inertia C. If no name of the claim implies one, the name is
+    that in ``USUAL``, or ``known`` itself.
     """
     for mine, other in renaming.items():
         if other is not None and (numbered := _numbered_angle(known, mine, plain_name(other))):

@@ -84,9 +84,9 @@ class Search(NamedTuple):
 
 
 CLOSE = 1e-8
-"""The largest relative difference between two values of a part at the first test point for a test at all points.
+"""If two values of a part differ relatively by more than this at the first test point, no other point is tested.
 
-The values are the one after a change of the part, and the one with which the whole formula is right.
+One value is that of the part after a change, the other is the value with which the whole formula is right.
 """
 
 

@@ -224,8 +224,9 @@ def _wrong_row(values: Values, needed: Values) -> int | None:
 def _row_of_matrix(whole: Valued, needed: Values, row: int) -> Iterator[tuple[Valued, Values]]:
     """Yield (entry, values that the entry should have) for the entries in row ``row`` of the matrix in ``whole``.
 
-    ``whole`` is a matrix times a column. If one of the yielded entries alone changes to the values in its pair (one for
-    each test point), the product has the values ``needed``. Entries that multiply a zero of the column are left out.
+    ``whole`` is a matrix times a column; only component ``row`` of the product differs from ``needed``. A yielded entry
+    can correct it alone: if this entry had the values of its pair (one for each test point) and all other entries kept
+    their values, the product would have the values ``needed``. Entries that multiply a zero of the column are left out.
     """
     factors = whole.node.args
     place, matrix = next(((n, factor) for n, factor in enumerate(factors) if matrix_entries(factor)), (0, whole.node))

@@ -120,11 +120,13 @@ def strangeness(renaming: dict[str, str | None]) -> int:
 def _extended(
     renaming: dict[str, str | None], order: Sequence[str], fitting: dict[str, list[str]], count: int
 ) -> Iterator[dict[str, str | None] | None]:
-    """Yield the ways to complete ``renaming`` by names for the symbols ``order`` of the known formula.
+    """Yield all renamings that extend ``renaming`` to the symbols ``order`` of the known formula.
 
-    Also yield None at each step of the search, so that the caller can count the results and give up. ``fitting`` maps
-    each symbol to the claim's names that may mean the same; ``count`` is the number of names in the claim, of which all
-    but at most one must be used. A symbol keeps its name if this is one of the claim's names in ``fitting``.
+    A renaming maps symbols of the known formula to names in the claim; None in place of a name means that the claim
+    lacks the symbol. Also yield None at each step of the search, so that the caller can count the steps and give up.
+    ``fitting`` maps each symbol to the claim's names that may mean the same; ``count`` is the number of names in the
+    claim, of which all but at most one must be used. If ``fitting`` has the symbol's own name and no symbol has this
+    name yet, the symbol keeps it.
     """
     yield None
     if not order:

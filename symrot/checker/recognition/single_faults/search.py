@@ -37,8 +37,11 @@ MOST_SEARCHES = 4
 MOST_NODES = 500
 """The largest number of symbols and operations in a formula that is searched for faults."""
 FEW = 3
-"""If only one of the known formula and the claim contains angles, the two are usually compared only if the known
-formula has at most this many symbols.
+"""A known formula that has angles and more symbols than this is not compared with a claim without angles.
+
+Nor is a known formula without angles and with more symbols than this compared with a claim that has angles. There are
+two exceptions: the context states the body that the known formula is for, or the claim has just one angle and one
+symbol more than the known formula.
 """
 
 
@@ -49,10 +52,14 @@ Renaming = dict[str, str | None]
 def near_formulas(claim: Claim, named: NamedFormula, fits: Callable[[Known], bool]) -> list[Near]:
     """Return changes of a claim's formula that may each turn it into a known formula, the cheapest first.
 
-    ``fits(known)`` decides which known formulas are compared. A single result with the code "none" means that a formula
-    with the root of a sum has the values of a known one without a change. The list is empty if no change is found, if
-    the formula is too long or cannot be evaluated at enough random points, and if the claim has hypotheses and its
-    formula has the values of a known one already.
+    ``fits(known)`` decides which known formulas are compared. After each change, the claim's formula has the values of
+    a known one at random points.
+
+    If the claim's formula contains the root of a sum and has the values of a known formula as it stands, the list has
+    one entry, with the code "none": such a formula may be right although its fingerprint is not that of the known one.
+
+    The list is empty in three cases: no change is found; the claim's formula is longer than MOST_NODES or cannot be
+    evaluated at enough random points; the claim has hypotheses and its formula has the values of a known one already.
     """
     search = _search(claim, named)
     if search is None:

@@ -43,9 +43,9 @@ class Solution(NamedTuple):
 def solved_relations() -> tuple[SolvedRelation, ...]:
     """Return the known relations (equations), each solved for its symbols where this is easy.
 
-    It is easy for a symbol w if each term of the equation has a factor w or no w at all (or a factor w^2 or no w), and
-    a term without w exists. A relation is also solved for an angle theta if this holds for w = cos(theta) or
-    sin(theta), without squares, and theta occurs nowhere else.
+    An equation is solved for a symbol w if some of its terms are free of w and all others are proportional to w, or all
+    others are proportional to w^2. It is solved for an angle theta if some of its terms are free of theta and all
+    others are proportional to cos(theta), or all others to sin(theta).
     """
     solved = []
     for known in (known for group in by_fingerprint().values() for known in group if known.is_relation):
@@ -130,8 +130,8 @@ def _terms(tree: Node) -> list[Node]:
 def _solution(terms: Sequence[Node], letter: Node) -> Solution | None:
     """Return the solution of ``sum of terms == 0`` for a letter w.
 
-    Return None if w is in no term or in every term, or if a term contains w otherwise than as a factor w or w^2. None
-    also if w is a factor of one term and w^2 of another.
+    Return None if w is in no term or in every term, if a term with w is neither proportional to w nor to w^2, or if one
+    term is proportional to w and another one to w^2.
     """
     with_letter = [term for term in terms if letter in (node for _, node in walk(term))]
     rest = [negated(term) for term in terms if term not in with_letter]

@@ -29,15 +29,15 @@ def is_own_transpose(node: Node) -> bool:
     return node.kind == "call" and node.value in ("vee", "qmul", "Matrix", "eye", "diag", "cross", *ROTATIONS)
 
 
-def _scalars_in_front(node: Node, matrices: Callable[[Node], bool]) -> tuple[list[Node], Node]:
+def _scalars_in_front(node: Node, is_matrix: Callable[[Node], bool]) -> tuple[list[Node], Node]:
     """Return the scalar factors of a vector, and the vector without these factors: ([m], v) for ``m*v``."""
-    scalars = [factor for factor in node.args if not matrices(factor)] if node.kind == "product" else []
+    scalars = [factor for factor in node.args if not is_matrix(factor)] if node.kind == "product" else []
     rest = [factor for factor in node.args if factor not in scalars]
     return (scalars, product(rest)) if scalars and rest else ([], node)
 
 
 def edits_of_call(
-    node: Node, path: Path, functions: Collection[str], matrices: Callable[[Node], bool]
+    node: Node, path: Path, functions: Collection[str], is_matrix: Callable[[Node], bool]
 ) -> Iterator[PartEdit]:
     """Yield edits of a function call at ``path``: another function, half of or double the angle, arguments exchanged.
 
@@ -63,7 +63,7 @@ def edits_of_call(
     elif name == "qmul":
         yield "quaternion_product_order", replace(node, args=arguments[::-1]), 0.0
     elif name == "cross":
-        first, second = (_scalars_in_front(argument, matrices) for argument in arguments)
+        first, second = (_scalars_in_front(argument, is_matrix) for argument in arguments)
         made = product([*first[0], *second[0], replace(node, args=(second[1], first[1]))])
         yield "sign_of_term", made, COST["cross_product_order" if path else "whole_cross_product_order"]
     elif name in functions:

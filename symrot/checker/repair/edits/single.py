@@ -1,6 +1,6 @@
 """The faults that occur in practice (a lost factor, a wrong sign), as edits of a tree; each has a code and a cost.
 
-An edit changes one part of a formula; it costs less if its fault is more likely. The argument ``matrices`` of the
+An edit changes one part of a formula; it costs less if its fault is more likely. The argument ``is_matrix`` of the
 functions tells whether a node is a matrix.
 """
 
@@ -17,8 +17,11 @@ from symrot.checker.repair.edits.trees import put, square_of, substituted, with_
 __all__ = ["Edit", "single_edits"]
 
 FEW = 3
-"""The largest number of sines and cosines of one angle for which ``COST["angle_everywhere"]`` is the cost of halving or
-doubling the angle in all of them; for more, it is ``COST["angle_everywhere_often"]``."""
+"""The largest number of sines and cosines of one angle in which it is cheap to halve or double the angle.
+
+The edit halves or doubles the angle in all of them. It costs ``COST["angle_everywhere"]`` for up to this number of
+sines and cosines, and ``COST["angle_everywhere_often"]``, which is higher, for more.
+"""
 
 
 @dataclass(frozen=True)
@@ -35,9 +38,9 @@ def single_edits(
     tree: Node,
     names: Collection[str],
     functions: Collection[str],
-    matrices: Callable[[Node], bool],
+    is_matrix: Callable[[Node], bool],
     moving: bool,
-    opened: Callable[[Path], bool] = lambda path: True,
+    is_tried: Callable[[Path], bool] = lambda path: True,
 ) -> Iterator[Edit]:
     """Yield every single edit of a tree; edits that change all occurrences of a name or angle come first.
 
@@ -48,16 +51,16 @@ def single_edits(
         Names of symbols and definitions.
     functions : collection of str
         Names of functions of time. An edit may put any of these names in place of another.
-    matrices : function
+    is_matrix : function
         Tells whether a node is a matrix.
     moving : bool
         Whether the claim contains a derivative. Exchanged factors, as in ``diff(R, t) == R*W`` for ``W*R``, then count
         as a confusion of the body frame with the space frame; otherwise as a wrong order of factors.
-    opened : function
-        Tells whether an edit may change the part at a path; by default it may change every part. It is not asked about
-        edits that change all occurrences of a name or angle.
+    is_tried : function
+        Tells whether edits of the part at a path are yielded; by default they are for every part. Edits that change all
+        occurrences of a name or angle are always yielded.
     """
-    yield from _everywhere(tree, matrices)
+    yield from _everywhere(tree, is_matrix)
     order = "frame_body_space" if moving else "commutator_order"
     nodes = [node for _, node in walk(tree)]
     entries = {id(member) for node in nodes if node.kind == "list" for member in node.args}
@@ -65,13 +68,13 @@ def single_edits(
     closed = {id(part) for node in nodes if node.kind in ("power", "index", "call") and not _admits_squares(node)
               for part in node.args}  # fmt: skip
     for path, node in walk(tree):
-        if not opened(path):
+        if not is_tried(path):
             continue
-        for code, made, extra in _changes(node, path, names, functions, matrices, order, id(node) in entries):
+        for code, made, extra in _changes(node, path, names, functions, is_matrix, order, id(node) in entries):
             is_exponent = code == "factor" and id(node) in exponents
             code = "exponent" if is_exponent else code
             yield Edit(code, COST[code] + extra, path, put(tree, path, made))
-        if id(node) not in closed and _is_scalar(node, matrices):
+        if id(node) not in closed and _is_scalar(node, is_matrix):
             squared = square_of(node)
             yield Edit("exponent", COST["exponent"], path, put(tree, path, squared))
 
@@ -81,17 +84,17 @@ def _admits_squares(node: Node) -> bool:
     return node.kind == "call" and node.value in ("Matrix", "sqrt", "diag")
 
 
-def _is_scalar(node: Node, matrices: Callable[[Node], bool]) -> bool:
+def _is_scalar(node: Node, is_matrix: Callable[[Node], bool]) -> bool:
     """Return whether a part is a scalar name or call, such as r or sin(x), that may have lost a square."""
     if node.kind not in ("name", "call") or node == Node("name", "pi") or node.value in ("Matrix", "diff", "integrate"):
         return False
     # calls with scalar values and matrices as arguments
-    return not matrices(node) or node.value in ("dot", "det", "trace")
+    return not is_matrix(node) or node.value in ("dot", "det", "trace")
 
 
 def _changes(
     node: Node, path: Path, names: Collection[str], functions: Collection[str],
-    matrices: Callable[[Node], bool], order: str, lone: bool,
+    is_matrix: Callable[[Node], bool], order: str, lone: bool,
 ) -> Iterator[PartEdit]:  # fmt: skip
     """Yield the edits of the part ``node``, which is at ``path`` in its tree: code, new part and additional cost.
 
@@ -99,7 +102,7 @@ def _changes(
     ----------
     names, functions : collection of str
         Names of symbols and definitions, and of functions of time; an edit may put any of them in place of another.
-    matrices : function
+    is_matrix : function
         Tells whether a node is a matrix.
     order : str
         The code of the fault if two matrices in a product are in the wrong order.
@@ -107,11 +110,11 @@ def _changes(
         Whether the part is an entry of a matrix or list; a number may become 0 only as such an entry or a whole tree.
     """
     if node.kind == "sum":
-        yield from edits_of_sum(node, matrices)
+        yield from edits_of_sum(node, is_matrix)
     elif node.kind == "product":
-        yield from edits_of_product(node, matrices, order)
+        yield from edits_of_product(node, is_matrix, order)
     elif node.kind == "call":
-        yield from edits_of_call(node, path, functions, matrices)
+        yield from edits_of_call(node, path, functions, is_matrix)
     elif node.kind == "name":
         for other in neighbours(node.value, names):
             yield "wrong_symbol", replace(node, value=other), 0.0
@@ -133,13 +136,13 @@ def _changes(
             if member.kind not in ("list", "number", "sum"):
                 made = (*node.args[:place], negated(member), *node.args[place + 1 :])
                 yield "sign_of_term", replace(node, args=made), 0.0
-    if node.kind in ("name", "call") and matrices(node) and not is_own_transpose(node):
+    if node.kind in ("name", "call") and is_matrix(node) and not is_own_transpose(node):
         yield "active_passive_transpose", Node("transpose", None, (node,)), COST["name_transposed"]
     if node.kind != "number" and node.kind != "list" and (not path or node.kind == "neg"):
         yield "overall_sign" if not path else "sign_of_term", negated(node), 0.0
 
 
-def _everywhere(tree: Node, matrices: Callable[[Node], bool]) -> Iterator[Edit]:
+def _everywhere(tree: Node, is_matrix: Callable[[Node], bool]) -> Iterator[Edit]:
     """Yield edits that change all occurrences of a name or angle in a tree, such as every u to u/2."""
     nodes = [node for _, node in walk(tree)]
     angles = {node.args[0] for node in nodes if node.kind == "call" and node.value in OPPOSITE}
@@ -158,7 +161,7 @@ def _everywhere(tree: Node, matrices: Callable[[Node], bool]) -> Iterator[Edit]:
     names = sorted({node.value for node in nodes if node.kind == "name"})
     for name in names:
         node = Node("name", name)
-        if sum(other == node for other in nodes) > 1 and matrices(node):
+        if sum(other == node for other in nodes) > 1 and is_matrix(node):
             transposed = substituted(tree, node, Node("transpose", None, (node,)))
             yield Edit("active_passive_transpose", COST["transpose_everywhere"], (), transposed)
     if (other := with_other_products(tree)) is not None:

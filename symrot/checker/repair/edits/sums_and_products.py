@@ -1,4 +1,7 @@
-"""Edits of one sum or one product: a sign, a factor, a term, brackets, the order of factors."""
+"""Edits of one sum or one product: a sign, a factor, a term, brackets, the order of factors.
+
+The argument ``is_matrix`` of the functions tells whether a node is a matrix or vector.
+"""
 
 import itertools
 from collections.abc import Callable, Iterator, Sequence
@@ -23,10 +26,10 @@ PartEdit = tuple[str, Node, float]
 """An edit of a part: (code of the corrected fault, new tree of the part, cost in addition to ``COST[code]``)."""
 
 
-def edits_of_sum(node: Node, matrices: Callable[[Node], bool]) -> Iterator[PartEdit]:
+def edits_of_sum(node: Node, is_matrix: Callable[[Node], bool]) -> Iterator[PartEdit]:
     terms = list(node.args)
     plain = [term.args[0] if term.kind == "neg" else term for term in terms]
-    if len(terms) == 2 and all(p.kind == "product" for p in plain) and matrices(plain[0]):
+    if len(terms) == 2 and all(p.kind == "product" for p in plain) and is_matrix(plain[0]):
         first, second = (set(p.args) for p in plain)
         if first == second:
             yield "commutator_order", sum_of([negated(term) for term in terms]), 0.0
@@ -64,11 +67,11 @@ def bracketed(terms: Sequence[Node]) -> Iterator[Node]:
             yield sum_of([*before, negated(whole) if is_negative else whole, *after])
 
 
-def edits_of_product(node: Node, matrices: Callable[[Node], bool], order: str) -> Iterator[PartEdit]:
+def edits_of_product(node: Node, is_matrix: Callable[[Node], bool], order: str) -> Iterator[PartEdit]:
     factors = list(node.args)
     for place in range(len(factors) - 1):
         first, second = factors[place : place + 2]
-        if matrices(first) and matrices(second) and first != second:
+        if is_matrix(first) and is_matrix(second) and first != second:
             yield order, product([*factors[:place], second, first, *factors[place + 2 :]]), 0.0
     if len(factors) > 1 and all(factor.kind == "call" and factor.value in ROTATIONS for factor in factors):
         yield from _of_sequence(factors)
@@ -78,16 +81,19 @@ def edits_of_product(node: Node, matrices: Callable[[Node], bool], order: str) -
             rest = [number(1), *rest]
         yield "factor", product(rest), COST["factor_removed"]
     yield from _of_quotients(factors)
-    yield from _with_exchanged_names(node, matrices)
-    yield from _with_roots(node, matrices)
-    if not any(map(matrices, factors)):
+    yield from _with_exchanged_names(node, is_matrix)
+    yield from _with_roots(node, is_matrix)
+    if not any(map(is_matrix, factors)):
         yield "factor", product([number(2), node]), COST["product_doubled_or_halved"]
         yield "factor", product([number(Fraction(1, 2)), node]), COST["product_doubled_or_halved"]
 
 
-def _with_roots(node: Node, matrices: Callable[[Node], bool]) -> Iterator[PartEdit]:
-    """Yield edits of a product that take the root of some factors: ``2*sqrt(g*h)``, ``g*h*sqrt(2)`` for ``2*g*h``."""
-    if any(map(matrices, node.args)):
+def _with_roots(node: Node, is_matrix: Callable[[Node], bool]) -> Iterator[PartEdit]:
+    """Yield edits of a product that take the root of some factors: ``2*sqrt(g*h)``, ``g*h*sqrt(2)`` for ``2*g*h``.
+
+    Yield nothing for a product with a matrix or vector.
+    """
+    if any(map(is_matrix, node.args)):
         return
     kinds = [any(part.kind in ("name", "call") and part.value != "pi" for _, part in walk(f)) for f in node.args]
     numbers, others = (
@@ -104,13 +110,13 @@ def _is_square(node: Node) -> bool:
     return isinstance(value, Fraction) and all(isqrt(n) ** 2 == n for n in (value.numerator, value.denominator))
 
 
-def _with_exchanged_names(node: Node, matrices: Callable[[Node], bool]) -> Iterator[PartEdit]:
+def _with_exchanged_names(node: Node, is_matrix: Callable[[Node], bool]) -> Iterator[PartEdit]:
     """Yield the edits of a product that exchange two vectors or easily confused letters, such as phi and theta."""
     names = list(dict.fromkeys(part for _, part in walk(node) if part.kind == "name" and part.value != "pi"))
     if len(names) > MOST_NAMES_EXCHANGED or all(part.kind == "name" for part in node.args):
         return
     for first, second in itertools.combinations(names, 2):
-        if (matrices(first) and matrices(second)) or second.value in neighbours(first.value, [second.value]):
+        if (is_matrix(first) and is_matrix(second)) or second.value in neighbours(first.value, [second.value]):
             hole = Node("name", "?")
             made = substituted(substituted(substituted(node, first, hole), second, first), hole, second)
             yield "wrong_symbol", made, COST["names_exchanged"]
