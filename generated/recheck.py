@@ -295,7 +295,7 @@ EXACT_FUNCTIONS |= {"copysign": Decimal.copy_sign}
 class Decimals(Arithmetic):
     """An arithmetic of 190-digit numbers with sin, cos, sqrt, abs, atan2 and copysign.
 
-    Other functions have random values.
+    Any other function, such as tan, has a random value, the same for equal arguments, since no law depends on it.
     """
 
     def __init__(self):
@@ -311,7 +311,7 @@ class Decimals(Arithmetic):
     def power(self, x, exponent):
         return x**exponent if isinstance(exponent, int) else x.sqrt() ** int(2 * exponent)
 
-    # other functions, such as tan, get random values: no law depends on them, but formulas beside the law may have them
+    # formulas beside a law may contain other functions
     def apply(self, function, arguments):
         if function in EXACT_FUNCTIONS:
             return EXACT_FUNCTIONS[function](*arguments)
@@ -938,7 +938,7 @@ class CReader(Reader):
 def run(body, numbers, inputs):
     """Run a C ``body`` on ``inputs`` in the arithmetic ``numbers``.
 
-    Return a map from each output to its value, and the set of the values of those angles whose size the body tests.
+    Return a map from each output to its value, and the set of the angles whose size the body tests with symrot_far.
     """
     names, outputs = dict(inputs), {}
     for target, expression in body.statements:
@@ -1346,7 +1346,8 @@ def hexadecimal(text, place):
 def point_of_box(data, specification, real):
     """Return a random point of the box for which rounding errors are bounded, or None if no point can be drawn.
 
-    No point is drawn without bounds, for the parameters of a scene, or if points of the box are excluded.
+    No point can be drawn if the certificate states no bounds, if the kernel has constants of a scene as parameters, or
+    if the bounds exclude points of the box (a clearance that is not 0).
     """
     if "rounding" not in data or data["spec"]["parameters"]:
         return None

@@ -40,7 +40,7 @@ NUMBER = re.compile(r"(?<![\w.])(\d+\.\d*(?:e[-+]?\d{1,3})?f?|\d+e[-+]?\d{1,3}f?
 OPERATORS = {ast.Add: operator.add, ast.Sub: operator.sub, ast.Mult: operator.mul, ast.Div: operator.truediv}
 CHOICES = {ast.Lt: "select_lt", ast.Eq: "select_eq", ast.GtE: "select_ge"}
 MATH = ["sin", "cos", "tan", "asin", "acos", "atan", "exp", "log", "sinh", "cosh", "tanh", "sqrt", "atan2", "copysign"]
-SAFE = {  # function of emitted files -> its formula, and its value in an exceptional case
+SAFE = {  # function of emitted C files, without the prefix symrot_ -> its formula, and its value in an exceptional case
     "sinc": ("sin(x)/x", "1 if x == 0"),
     "arc_ratio": ("atan2(x, y)/x", "1/y if x == 0"),
     "sine_gap": ("(x - sin(x))/x**3", "{series} if x*x < {split}"),
@@ -201,12 +201,12 @@ class KernelCheck:
         self.name, self.readback, self.spec, self.c_functions = name, data["readback"][name], data["spec"], c_functions
         self.real, self.symbols, self.functions = self.readback["type"], RandomIntegers(), RandomIntegers()
         self.end = end = {"double": "", "float": "f"}[self.real]
-        own = [f for f in c_functions if c_functions[f][:2] == ("static inline ", self.real)]
-        self.own = {f: f.removeprefix("symrot_").removeprefix("near_").removesuffix(end) for f in own}
+        static = [f for f in c_functions if c_functions[f][:2] == ("static inline ", self.real)]
+        self.static = {f: f.removeprefix("symrot_").removeprefix("near_").removesuffix(end) for f in static}
         ranged = ("sin", "cos", "atan2", "select_lt", "select_eq") if "symrot_math.h" in data["files"] else ()
         self.calls = {f + end: f for f in MATH} | {f"fabs{end}": "Abs"} | {f"symrot_{f}{end}": f for f in ranged}
         self.calls |= {f"symrot_choose_ge{end}": "select_ge"} if ranged else {}
-        self.calls |= self.own
+        self.calls |= self.static
         inputs = {place: self.spec["parameters"].get(symbol, symbol) for place, symbol, _ in data["inputs"]}
         parameters = {symbol for place, symbol, _ in data["inputs"] if place.startswith("p[")}
         require(
@@ -243,10 +243,12 @@ class KernelCheck:
         return written, exact * self.symbols["pi"] if times_pi else exact
 
     def run(self, body, places, targets=(), tested=()):
-        """Evaluate the statements ``body`` of a C function and return the computed values, as :meth:`Evaluator.run`.
+        """Evaluate the statements ``body`` of a C function; return the same result as :meth:`Evaluator.run`.
 
-        ``tested`` lists the angles whose size the C text tests. ValueError is raised if the body calls a function that
-        is accurate only for small angles, such as ``symrot_sin``, for an angle that is not in ``tested``.
+        ``places`` maps each input of the body, such as ``"q[0]"``, to its value. ``targets`` are the outputs that the
+        body may assign. ``tested`` lists the angles, as C expressions, whose size the C text tests. ValueError is
+        raised if the body calls a function that is accurate only for small angles, such as ``symrot_sin``, for an angle
+        that is not in ``tested``.
         """
         reader = Evaluator({}, self.functions, self.real, self.calls, self.constants if targets else ())
         computed = reader.run(body, places, targets)
@@ -259,8 +261,8 @@ class KernelCheck:
 
     def check(self):
         """Check that the functions for one sample and for many samples (``_batch``) compute the formulas."""
-        for function, bare in self.own.items():
-            self.check_own(function, bare)
+        for function, name in self.static.items():
+            self.check_static(function, name)
         places = [*self.inputs, *self.outputs]
         bases = dict.fromkeys(place.partition("[")[0] for place in places)
         for base in bases:
@@ -306,7 +308,12 @@ class KernelCheck:
         self.compare([again], batch, map(of_sample, self.outputs))
 
     def compare(self, bodies, places, targets, tested=()):
-        """Check that ``bodies``, in turn, assign to each target, such as ``"q[1]"``, the value of its formula."""
+        """Check that C statements assign to each target, such as ``"q[1]"``, the value of its formula.
+
+        ``bodies`` are the bodies of the loops of a function, executed one after another, or the body of a function
+        without loops. ``targets`` are the kernel's outputs in their order, as the C text writes them. For ``places``
+        and ``tested`` see :meth:`run`.
+        """
         targets, computed = [*targets], {}
         for body in bodies:
             computed |= self.run(body, places, [target for target in targets if target not in computed], tested)
@@ -316,17 +323,20 @@ class KernelCheck:
                 f"expected {place} of {self.name} to be the value of its formula, but the C text computes another",
             )
 
-    def check_own(self, function, bare):
-        """Check that a C ``function``, such as ``symrot_sinc``, computes the function ``bare``, such as ``sinc``."""
+    def check_static(self, function, name):
+        """Check that a static C function, such as ``symrot_sinc``, computes the function ``name``, here ``sinc``.
+
+        ``function`` is the name of the C function, which is defined in the kernel's C file.
+        """
         # near x = 0 the C text may compute a Taylor series instead, whose error the certificate states
-        (explicit, case), (_, _, arguments, body) = SAFE[bare], self.c_functions[function]
-        for _, split, coefficients, rest in (each for each in self.readback["series"] if each[0] == bare):
-            taylor = [(-1) ** k * TAYLOR[bare](k) for k in range(len(coefficients) + 1)]
+        (explicit, case), (_, _, arguments, body) = SAFE[name], self.c_functions[function]
+        for _, split, coefficients, rest in (each for each in self.readback["series"] if each[0] == name):
+            taylor = [(-1) ** k * TAYLOR[name](k) for k in range(len(coefficients) + 1)]
             falling = [abs(each) * Fraction(split) ** k for k, each in enumerate(taylor)]
             holds = sorted(falling, reverse=True) == falling and [*map(Fraction, coefficients)] == taylor[:-1]
             holds = holds and Fraction(rest) == falling[-1] / (falling[0] - falling[1])
             require(
-                holds, f"expected the Taylor series of {bare} with the bound of its error, got another series or bound"
+                holds, f"expected the Taylor series of {name} with the bound of its error, got another series or bound"
             )
             series = [f"({nearest(each, self.real)})*x**{2 * k}" for k, each in enumerate(taylor[:-1])]
             case = case.format(series=" + ".join(series), split=split)

@@ -186,7 +186,16 @@ class FlagRemark:
 
 @dataclass(frozen=True)
 class FlagEffect:
-    """The effect of compiler flags: ``holds`` is "bits", "bounds" or "nothing", and ``remarks`` give the reasons."""
+    """The effect of compiler flags on a certificate.
+
+    Attributes
+    ----------
+    holds : str
+        What stays proven: ``"bits"`` (the results are those of the C text bit for bit, and its error bounds hold),
+        ``"bounds"`` (only the error bounds hold) or ``"nothing"``.
+    remarks : tuple of FlagRemark
+        The reasons, flag by flag.
+    """
 
     holds: str
     remarks: tuple[FlagRemark, ...]

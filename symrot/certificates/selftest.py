@@ -65,7 +65,10 @@ class _CheckedFunction:
 
 
 def _angles(random: Random, digits: int) -> Iterator[tuple[float, float]]:
-    """Yield test arguments (0, x) for sine and cosine: angles x of ``digits`` binary digits, up to 1e6 rad."""
+    """Yield test arguments for sine and cosine: pairs (0, x) with angles x of ``digits`` binary digits, up to 1e6 rad.
+
+    All test arguments are pairs, like those (y, x) of atan2; sine and cosine use x alone.
+    """
     from mpmath import mp, mpf
 
     # near multiples of pi/2 the reduction of an angle loses digits
@@ -92,7 +95,10 @@ def _sides(random: Random, digits: int) -> Iterator[tuple[float, float]]:
 
 
 def _radicands(random: Random, digits: int) -> Iterator[tuple[float, float]]:
-    """Yield test arguments (0, x) for the square root: random positive x of ``digits`` binary digits."""
+    """Yield test arguments for the square root: pairs (0, x) with random positive x of ``digits`` binary digits.
+
+    All test arguments are pairs, like those (y, x) of atan2; the square root uses x alone.
+    """
     from mpmath import mpf
 
     for _ in range(POINTS):

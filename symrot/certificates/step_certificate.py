@@ -142,9 +142,10 @@ def is_step(data: object) -> bool:
 
 
 def with_bounds(data: Data, bounds: Data) -> Data:
-    """Return the certificate ``data`` of a step, not sealed, with the section ``bounds``: bounds of one step's errors.
+    """Return the content of a step's certificate with the section ``bounds``, which bounds the errors of one step.
 
-    The section ``trusted`` is replaced by one that fits.
+    ``data`` is the content without these bounds. The section ``trusted``, the assumptions of the certificate, becomes
+    that of a certificate with bounds. The result has no entry ``"seal"``, the hash of all other entries.
     """
     bare = {key: value for key, value in data.items() if key not in ("bounds", "trusted", "seal")}
     return bare | {"bounds": bounds, "trusted": trusted(data["step"]["method"], True, "scene" in data)}
@@ -230,7 +231,8 @@ def bounds_of_step(
     Raises
     ------
     InputError
-        If an error has no bound on the box, or a constant of the rates would be taken for another number.
+        If an error has no bound on the box, or if a constant of the rates has the same double as a simpler number: the
+        bounds would be proven for the simpler number.
     """
     _require_intended(rates)
     rounding = rounding_section(operations, None, box, budget=EVALUATIONS, fresh=fresh)
@@ -250,10 +252,10 @@ def bounds_of_step(
 
 
 def _require_intended(rates: Program) -> None:
-    """Raise InputError if the certificate would take a constant in the C text of the rates for another number.
+    """Raise InputError if a constant of the rates has the same double as a simpler number.
 
-    For example, the constant 0.3333333333333333 is refused: its double is that of 1/3, so the certificate takes it for
-    1/3. The constants 1/3 and 0.3 are accepted.
+    For example, the constant 0.3333333333333333 is refused. The C text contains its double, which is also the double of
+    1/3, and the bounds are proven for 1/3. The constants 1/3 and 0.3 are accepted.
     """
     # the C text has the double alone, whose rounding error is bounded as that of the number for which it stands
     pending = [node for _, node in (*rates.temporaries, *rates.outputs)]
@@ -266,14 +268,17 @@ def _require_intended(rates: Program) -> None:
             number = f"{meant.fraction}*pi" if meant.times_pi else str(meant.fraction)
             written = Decimal(node[1].numerator) / node[1].denominator
             raise InputError(
-                f"{rates.signature.name}: expected no constant that a simpler number rounds to, since the bounds would "
-                f"be proven for the simpler number, got {written}, which has the same double as {number}; write "
+                f"{rates.signature.name}: expected each constant to be the simplest number with its double, because "
+                f"the bounds are proven for this number, got {written}, which has the same double as {number}; write "
                 f"{number}, or {written} with fewer digits"
             )
 
 
 def _with_intended_constants(rates: Program, method: Method) -> Method:
-    """Return a method with the exact coefficients, such as 1/3, for which the constants of the C text stand."""
+    """Return a method with exact coefficients, such as 1/3, that the C text contains rounded and times a factor.
+
+    CertificateError is raised if two constants of the C text stand for different values of one coefficient.
+    """
     if not isinstance(method, RungeKutta) or not method.rounded:
         return method
     factors = [abs(factor) for factor in dict.fromkeys(without_factors(rates)[1])]
@@ -286,8 +291,9 @@ def _with_intended_constants(rates: Program, method: Method) -> Method:
         for own, factor in fractions:
             if own is not None and own != coefficient * factor:
                 raise CertificateError(
-                    f"{method.name}: expected the constant {float(value * factor)!r} in the C text to stand for "
-                    f"{factor} times the coefficient {float(value)!r}, but symrot reads this constant as {own}"
+                    f"{method.name}: expected the constant {float(value * factor)!r} in the C text, which is {factor} "
+                    f"times the coefficient {float(value)!r}, to be a rounded value of {coefficient * factor}, but the "
+                    f"simplest number that rounds to it is {own}; take another method, or certify without ranges"
                 )
         return coefficient
 

@@ -57,8 +57,8 @@ def convert(source: str, target: str, values: Sequence[Any] | Matrix | None = No
     Raises
     ------
     InputError
-        If a name is unknown, or if no or many values of ``target`` describe the attitude, as many axes do without a
-        rotation.
+        If a name is unknown, or if no set of ``target`` parameters describes the attitude, or more than one: for a
+        rotation by zero, for example, any axis will do.
     """
     # Every description converts to and from the quaternion. The dcm is none of them: chart(name).dcm, euler_of_dcm.
     start = chart(source)

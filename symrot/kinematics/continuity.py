@@ -45,10 +45,11 @@ def unwrap_euler(angles: Any, sequence: str, locked: Any = None) -> Array:
     Notes
     -----
     Each attitude has two sets of angles, apart from multiples of 2 pi: a proper sequence also has ``(q1 + pi, -q2, q3 +
-    pi)``, a Tait-Bryan sequence ``(q1 + pi, pi - q2, q3 + pi)``. At each sample the set is chosen that is closer to the
-    set chosen at the sample before. Call the set in ``angles`` own, the second set other. One comparison for each pair
-    of neighbouring samples suffices: the own set of the first sample is compared with both sets of the second. If the
-    other set is closer, the choice changes between these samples from own to other, or from other to own.
+    pi)``, a Tait-Bryan sequence ``(q1 + pi, pi - q2, q3 + pi)``. At each sample the function chooses the set that is
+    closer to the set chosen at the sample before. One comparison for each pair of neighbouring samples suffices: the
+    set of the earlier sample in ``angles`` is compared with both sets of the later sample. If the set of the later
+    sample in ``angles`` is closer, the choice stays as it is: the sets in ``angles``, or the second sets. Otherwise the
+    choice changes between the two samples.
     """
     (first, _, last), _, _, _ = sequence_axes(sequence)
     angles = np.array(array_of(angles, 3, what=f"a set of {sequence} angles"))

@@ -241,7 +241,8 @@ def _rodrigues(*q: Array) -> Components:
 def quaternion_to_rodrigues(q: Any) -> tuple[Array, Mask]:
     """Return classical Rodrigues parameters, shape (..., 3), and a mask.
 
-    The mask is True for rotations by pi, and so near pi that the parameters overflow; the parameters are NaN there.
+    The mask is True for rotations by pi, and for rotations so near pi that the parameters overflow. The parameters of
+    these rotations are NaN.
     """
     rodrigues = by_components(_rodrigues, array_of(q, 4, what="a quaternion"), 4)
     return rodrigues[..., :3], rodrigues[..., 3] == 1
@@ -312,11 +313,13 @@ def mrp_switch(s: Any) -> tuple[Array, Mask]:
 
 
 def sequence_axes(sequence: str) -> tuple[tuple[int, int, int], tuple[int, int, int], int, int]:
-    """Return (axes, order, m, sign) of an Euler sequence, for the product of three rotations that gives ``dcm_sb``.
+    """Return (axes, order, m, sign) of an Euler sequence, whose attitude ``dcm_sb`` is a product of three rotations.
 
-    ``axes`` are those of the three factors, from left to right; ``order`` are the indices of their angles in the set of
-    Euler angles, (2, 1, 0) for an extrinsic sequence. The first two axes have ``e_1 x e_2 = sign e_m``. ``"ZYX"`` gives
-    (2, 1, 0), (0, 1, 2), 0, -1.
+    ``axes`` are the axes of the three rotations, 0, 1 or 2, in the product from left to right. ``order`` are the
+    indices of their angles in the set of Euler angles, (2, 1, 0) for an extrinsic sequence. The axis m is perpendicular
+    to the axes i and k of the first two rotations, with the unit vectors ``e_i x e_k = sign e_m``.
+
+    ``"ZYX"`` gives (2, 1, 0), (0, 1, 2), 0, -1.
     """
     axes, intrinsic = parse_sequence(sequence)
     (first, middle, last), order = (axes, (0, 1, 2)) if intrinsic else (axes[::-1], (2, 1, 0))

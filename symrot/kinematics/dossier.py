@@ -183,7 +183,10 @@ def _rows(matrix: Matrix, indent: str = "  ") -> list[str]:
 
 
 def _locked_point(sequence: str, middle: Expr) -> LockedPoint:
-    """Return the data of gimbal lock at a middle angle: the rates that do not rotate the body, and the lost axis."""
+    """Return the angle rates that do not rotate the body at gimbal lock, and the lost axis, as a LockedPoint.
+
+    ``middle`` is the value of the middle angle at gimbal lock. No angle rates can rotate the body about the lost axis.
+    """
     first, _, third = symbols.angles
     jacobian = rate_jacobian(sequence, "body", (first, middle, third))
     columns = [jacobian.col(i) for i in range(3)]

@@ -279,11 +279,12 @@ def _rate_jacobian(sequence: str, frame: str, parameters: tuple[Expr, ...]) -> E
 
 @cache
 def sequences_at_lock(sequence: str) -> dict[str, Set]:
-    """Return a map from each other Euler sequence to the attitudes at which it and ``sequence`` are in gimbal lock.
+    """Return a map from each other Euler sequence to the attitudes at which both sequences are in gimbal lock.
 
-    ``sequence`` is in gimbal lock at certain values of its middle angle. An attitude is given by the value, rad, of its
-    first angle (extrinsic: its third), while its third angle (extrinsic: its first) is zero. The set of these values is
-    empty if there is no such attitude.
+    At gimbal lock of ``sequence``, an attitude depends only on the sum or difference of the first and the third angle.
+    So the third angle of ``sequence`` is set to zero, and the first angle, in rad, describes the attitude; for an
+    extrinsic sequence, the first angle is set to zero and the third describes the attitude. The map has the set of
+    these values at which the other sequence is in gimbal lock too; the set may be empty.
     """
     left, _, _ = factors(sequence)
     # in gimbal lock only the sum or difference of the outer angles matters, so one of them is zero

@@ -24,15 +24,21 @@ __all__ = ["CLASSICAL", "MODIFIED", "Projection", "chart", "projection", "shadow
 
 @dataclass(frozen=True)
 class Projection:
-    """The projection ``p = (q1, q2, q3) / (centre + q0)`` of unit quaternions onto Rodrigues parameters."""
+    """The projection ``p = (q1, q2, q3) / (centre + q0)`` of unit quaternions onto Rodrigues parameters.
+
+    The quaternions are projected from the point (-centre, 0, 0, 0).
+    """
 
     name: str
     parameters: tuple[Symbol, ...]
-    centre: int  # 0: from the centre of the sphere; 1: from (-1, 0, 0, 0)
+    centre: int  # 0: classical parameters; 1: modified parameters
     about: str
 
     def of_quaternion(self, q: Sequence[Any] | Matrix = symbols.quaternion) -> ImmutableMatrix:
-        """Return the parameters, shape (3, 1), of a unit quaternion: its vector part divided by ``centre + q0``."""
+        """Return the parameters, shape (3, 1), of a unit quaternion: its vector part divided by ``centre + q0``.
+
+        ``centre`` is 0 for classical and 1 for modified Rodrigues parameters.
+        """
         q0, *vector = expressions(q, 4, "a quaternion")
         # infinite at rotations by pi (classical) or 2 pi (modified)
         return ImmutableMatrix([component / (self.centre + q0) for component in vector])

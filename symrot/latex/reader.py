@@ -11,7 +11,7 @@ __all__ = ["read"]
 DEEPEST_NESTING = 60
 REPEATED = {"_": "only one subscript", "^": "brackets around a repeated power", "'": "primes in one place"}
 AFTER = frozenset(["script", "prime", "space"])
-"""Kinds of tokens after an item: a script (index, power or prime) of the item, or a space, after which one may come."""
+"""Kinds of tokens that can continue an item: a script (index, power or prime), or a space that may precede a script."""
 
 
 def read(source: str, where: str = "", pieces: Sequence[Token] = ()) -> Row:

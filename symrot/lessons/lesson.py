@@ -107,8 +107,8 @@ class Lesson:
     topic : str
         Topic of exercises.
     library : tuple of str
-        Titles of those sections, the last ones of the derivation, that only symrot's numeric library needs. These
-        sections are printed on an appendix, a page of their own, and not in the lesson.
+        Titles of the sections at the end of the derivation that matter only for symrot's numeric library. The lesson
+        leaves out these sections; they are printed as an appendix, on a page of their own.
 
     Examples
     --------

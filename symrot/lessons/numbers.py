@@ -91,8 +91,9 @@ def _step(page: Page, number: Number) -> Step:
             if step.claim.startswith(number.step) and number.section in ("", section):
                 return step
     raise InputError(
-        f"{page.name}, {number.words!r}: expected `step` to be the first words of a step of this page, got "
-        f"{number.step!r}"
+        f"{page.name}, {number.words!r}: expected `step`, the first words of a claim on this page"
+        f"{f' in the section {number.section!r}' if number.section else ''}, got {number.step!r}, with which no claim "
+        "begins"
     )
 
 

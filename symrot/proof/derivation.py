@@ -74,7 +74,8 @@ class PrintedPage(Page):
     def part(self, number: int, detail: bool = False) -> "PrintedPage":
         """Return a page with one step, counted from 1.
 
-        With ``detail``, the page shows the expressions between the two sides of the equation that fit on a screen.
+        With ``detail``, the page also shows the calculation from the left to the right side of the step's equation, as
+        far as it fits on a screen.
 
         Raises
         ------
@@ -137,7 +138,10 @@ class Derivation(PrintedPage):
             self._note(left, right)
 
     def nonzero(self, text: str, expression: Expr, named: str) -> None:
-        """Assume that an expression is not zero, and print this: ``text``, its LaTeX ``named``, "is not 0"."""
+        """Assume that an expression is not zero, and add a paragraph to the page that says so.
+
+        The paragraph consists of ``text`` and the formula "NAMED is not 0"; ``named`` is the expression in LaTeX.
+        """
         self.items.append(Passage(f"{text} ${named} \\neq 0$."))
         # a step in which the expression is a denominator need not repeat this condition
         self.assumed += [part.expand() for part in (expression, *_factors(expression))]
@@ -300,9 +304,9 @@ class Derivation(PrintedPage):
     def _read(self, text: str, sides: tuple[Any, Any] = (S.Zero, S.Zero)) -> list[Any]:
         r"""Return the values of the sides of an equation in LaTeX: two for ``X = Y``, one for ``X`` alone.
 
-        If the first of several sides cannot be parsed, it is a new name: it is left out, and stands for the next side
-        in later LaTeX. Further equations after ``, \quad`` are checked, and define names for this text. Symbols of the
-        formulas ``sides`` need no declared meaning.
+        If the first of several sides cannot be parsed, this side is a new name for the value of the next side: later
+        LaTeX may contain the name, and the result has no value for this side. Further equations after ``, \quad``
+        are checked, and define names for this text. Symbols of the formulas ``sides`` need no declared meaning.
 
         Raises
         ------
@@ -335,7 +339,7 @@ class Derivation(PrintedPage):
     def _note(self, left: Any, right: Any) -> None:
         """Declare that ``left``, a symbol or the LaTeX of a name, stands for ``right`` in later LaTeX.
 
-        If ``right`` is LaTeX that cannot be parsed, a name loses its meaning instead.
+        If ``right`` is LaTeX that cannot be parsed, a name ``left`` stands for nothing in later LaTeX.
         """
         if isinstance(right, str):
             try:

@@ -1,6 +1,6 @@
 """Drawing of curves over time in one panel: fast oscillations become a filled band, overlapping curves are dashed.
 
-Lengths in a panel are counted in columns of 1/150 inch, about a pixel of a printed figure.
+Lengths in a panel are counted in pixels of 1/150 inch, as a figure is printed.
 """
 
 from collections.abc import Iterator, Sequence
@@ -11,16 +11,16 @@ from numpy.typing import NDArray
 
 from symrot.report.picture import COLOURS
 
-__all__ = ["BAND_NOTE", "COLUMNS_PER_INCH", "columns_of", "draw_curves", "envelope", "hidden_parts", "is_too_fast"]
+__all__ = ["BAND_NOTE", "PIXELS_PER_INCH", "draw_curves", "envelope", "hidden_parts", "is_too_fast", "size_in_pixels"]
 
 Floats = NDArray[np.float64]
 Mask = NDArray[np.bool_]
 
-COLUMNS_PER_INCH = 150  # pixels of a printed figure
-LEAST_PER_PERIOD = 5.0  # columns: a faster oscillation would be a solid block and is drawn as a band
+PIXELS_PER_INCH = 150  # of a printed figure
+LEAST_PER_PERIOD = 5.0  # pixels: a faster oscillation would be a solid block and is drawn as a band
 PERIODS_IN_BIN = 2.0  # a bin that holds whole periods contains their extremes
 WIDTHS = (2.0, 1.6, 1.2, 0.9)  # points: later curves are thinner and drawn on top, so that close curves stay visible
-NEAR = 2.5  # columns: a curve this close to an earlier one hides it
+NEAR = 2.5  # pixels: a curve this close to an earlier one hides it
 LONG = 0.04  # fraction of the panel: shorter overlaps are mere crossings
 DASH = 5.0  # points
 ROUNDING = 1e-9  # smaller changes of a curve, relative to its size, are rounding errors
@@ -28,10 +28,10 @@ HATCHES = ("", "///", "\\\\\\", "...")  # later bands are hatched, so that equal
 BAND_NOTE = "filled: least to greatest"
 
 
-def columns_of(axes: Any) -> tuple[float, float]:
-    """Return the width and the height of matplotlib axes, in columns of 1/150 inch."""
+def size_in_pixels(axes: Any) -> tuple[float, float]:
+    """Return the width and the height of matplotlib axes, in pixels of 1/150 inch."""
     box, dpi = axes.get_window_extent(), axes.figure.dpi
-    return COLUMNS_PER_INCH * box.width / dpi, COLUMNS_PER_INCH * box.height / dpi
+    return PIXELS_PER_INCH * box.width / dpi, PIXELS_PER_INCH * box.height / dpi
 
 
 def _turns(values: Floats) -> int:
@@ -41,34 +41,35 @@ def _turns(values: Floats) -> int:
     return int(np.count_nonzero(np.diff(slopes)))
 
 
-def is_too_fast(t: Floats, values: Floats, columns: float, visible: float) -> bool:
+def is_too_fast(t: Floats, values: Floats, width: float, visible: float) -> bool:
     """Return whether a curve oscillates too fast to be drawn as a line.
 
     Parameters
     ----------
     t, values : arrays, shape (n,)
         Times in increasing order, and the values of the curve there.
-    columns : float
-        The width of the panel in columns.
+    width : float
+        The width of the panel in pixels.
     visible : float
         The least change that can be seen, in the unit of the values; smaller oscillations, such as rounding errors, do
         not count.
     """
-    if 0.5 * _turns(values) * LEAST_PER_PERIOD <= columns:
+    if 0.5 * _turns(values) * LEAST_PER_PERIOD <= width:
         return False
-    _, low, high = envelope(t, values, columns)
+    _, low, high = envelope(t, values, width)
     return bool(np.median(high - low) > visible)
 
 
-def envelope(t: Floats, values: Floats, columns: float) -> tuple[Floats, Floats, Floats]:
+def envelope(t: Floats, values: Floats, width: float) -> tuple[Floats, Floats, Floats]:
     """Return the band, lower and upper bound, that is drawn instead of a curve that oscillates too fast for a line.
 
     Parameters
     ----------
     t, values : arrays, shape (n,)
         Times in increasing order, and the values of the curve there.
-    columns : float
-        The width of the panel in columns. A bin is at least one column wide and holds about two periods of the curve.
+    width : float
+        The width of the panel in pixels. The band is computed from the least and the greatest value in each bin of
+        time; a bin is at least one pixel wide and holds about two periods of the curve.
 
     Returns
     -------
@@ -77,7 +78,7 @@ def envelope(t: Floats, values: Floats, columns: float) -> tuple[Floats, Floats,
         outside the band.
     """
     periods = max(0.5 * _turns(values), 1.0)
-    count = int(max(1, min(columns, periods / PERIODS_IN_BIN, len(t) // 2)))
+    count = int(max(1, min(width, periods / PERIODS_IN_BIN, len(t) // 2)))
     edges = np.linspace(t[0], t[-1], count + 1)
     starts = np.searchsorted(t, edges[:-1], side="left")
     starts, places = np.unique(starts, return_index=True)  # a bin without samples joins the one after it
@@ -98,7 +99,7 @@ def hidden_parts(curves: Sequence[Floats], size: tuple[float, float], height: fl
     curves : sequence of arrays, shape (n,)
         The curves at the same evenly spaced times, in the order in which they are drawn; NaN where one is interrupted.
     size : tuple of 2 floats
-        Width and height of the panel in columns.
+        Width and height of the panel in pixels.
     height : float
         Height of the panel in the unit of the curves.
     """
@@ -141,7 +142,7 @@ def draw_curves(axes: Any, t: Floats, curves: Sequence[Floats], names: Sequence[
 
     The scale of the axes must be set before.
     """
-    size = columns_of(axes)
+    size = size_in_pixels(axes)
     scale = np.log10 if axes.get_yscale() == "log" else np.asarray
     heights = [scale(curve) for curve in curves]
     extremes = [(np.nanmin(curve), np.nanmax(curve)) for curve in heights if np.isfinite(curve).any()]
@@ -173,18 +174,18 @@ def draw_curves(axes: Any, t: Floats, curves: Sequence[Floats], names: Sequence[
 
 def _is_band(t: Floats, curve: Floats, size: tuple[float, float], height: float) -> bool:
     """Return whether a curve oscillates too fast for a line, so that a band between its envelopes is drawn."""
-    # size: width and height of the panel in columns (columns_of); height: the range of values that it shows
+    # size: width and height of the panel in pixels (size_in_pixels); height: the range of values that it shows
     known = np.isfinite(curve)
     if np.count_nonzero(known) < 3 or np.any(np.diff(t) < 0):
         return False
     return is_too_fast(t[known], curve[known], size[0], 2.0 * NEAR * height / size[1])
 
 
-def _draw_band(axes: Any, t: Floats, curve: Floats, name: str, columns: float, colour: Any, hatch: str) -> None:
+def _draw_band(axes: Any, t: Floats, curve: Floats, name: str, width: float, colour: Any, hatch: str) -> None:
     from matplotlib.colors import to_rgba
 
     known = np.isfinite(curve)
-    times, low, high = envelope(t[known], curve[known], columns)
+    times, low, high = envelope(t[known], curve[known], width)
     face = "none" if hatch else to_rgba(colour, 0.3)
     axes.fill_between(times, low, high, facecolor=face, edgecolor=colour, linewidth=0.8, hatch=hatch, zorder=1.8,
                       label=name)  # fmt: skip

@@ -42,7 +42,10 @@ def number_text(value: float | Fraction, digits: int = 6) -> str:
 
 
 def apart(*values: float) -> list[str]:
-    """Return numbers as texts with six digits, or with as many more, up to 17, as tell the two closest apart."""
+    """Return numbers as texts with six digits, or with more, up to 17, so that the two closest numbers look different.
+
+    All numbers are rounded to the same number of significant digits.
+    """
     ordered = sorted({float(value) for value in values})
     nearest = min((after - before for before, after in pairwise(ordered)), default=math.inf)
     digits = 6

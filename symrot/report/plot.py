@@ -16,7 +16,7 @@ from numpy.typing import NDArray
 from symrot import __version__
 from symrot.errors import InputError
 from symrot.formula.exact_numbers import show
-from symrot.report.curves import columns_of, draw_curves
+from symrot.report.curves import draw_curves, size_in_pixels
 from symrot.report.picture import COLOURS, GREY, draw, literal
 from symrot.report.sphere import FAINT, draw_directions, prefixed
 from symrot.report.vertical import has_vertical, vertical_angles
@@ -33,7 +33,7 @@ SUFFIXES = (".png", ".pdf", ".svg")
 FEWEST, MOST = 4000, 120_000  # limits of the number of samples in a plot
 PER_STEP, PER_RADIAN = 20, 16  # samples per step of the method, and per radian of the fastest rotation
 TIMES = ((4 * 86400.0, 86400.0, "days"), (4 * 3600.0, 3600.0, "h"), (0.0, 1.0, "s"))  # least span, factor, unit
-WIDE = 900.0  # columns
+WIDE = 900.0  # pixels
 GOLDEN = (5.0**0.5 - 1.0) / 2.0
 DRIFT_WIDTHS = (1.6, 1.3)  # points
 QUIET = 0.01  # a component that changes by less than this fraction of its size may be written as text, not drawn
@@ -98,7 +98,7 @@ def _is_wide(axes: Any) -> bool:
     """Return whether axes are so wide that a title on the left and a legend on the right fit in one line above."""
     from matplotlib import rcParams
 
-    return bool(rcParams["axes.titlelocation"] == "left" and columns_of(axes)[0] >= WIDE)
+    return bool(rcParams["axes.titlelocation"] == "left" and size_in_pixels(axes)[0] >= WIDE)
 
 
 def _legend(axes: Any) -> None:
@@ -261,8 +261,8 @@ def plot(trajectory: "Trajectory", ax: Any = None, panel: str = "rates") -> Any:
     ----------
     trajectory : Trajectory
         The motion. The panel draws its dense solution between its first and its last sample. A motion that belongs to
-        an ensemble, or was read from a file, has no dense solution: the panel then joins its samples by lines. The
-        first has no panel ``"drift"``, and the second only ``"rates"``.
+        an ensemble, or was read from a file, has no dense solution: the panel then joins its samples by lines. A motion
+        of an ensemble has no panel ``"drift"``, and a motion that was read from a file has only the panel ``"rates"``.
     ax : matplotlib Axes, optional
         The axes to draw into; default: axes of a new figure of ``matplotlib.pyplot``.
     panel : str
@@ -279,9 +279,9 @@ def plot(trajectory: "Trajectory", ax: Any = None, panel: str = "rates") -> Any:
     Raises
     ------
     InputError
-        If there is no such panel, also for this kind of motion, matplotlib is not installed, ``ax`` has three
-        dimensions, ``trajectory`` is not one motion, has no samples or no attitude to draw, or the scene has no
-        vertical and the panel needs one.
+        If there is no such panel, or none for this kind of motion; if matplotlib is not installed, or ``ax`` has three
+        dimensions; if ``trajectory`` is not one motion, or has no samples or no attitude to draw; or if the panel needs
+        a vertical and the scene has none.
 
     Examples
     --------

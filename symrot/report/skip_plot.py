@@ -18,16 +18,15 @@ GENERAL, OWN, AUTO = COLOURS[1], COLOURS[0], COLOURS[6]
 LEAST = 0.6  # smaller values, such as 0 operations, are drawn here on the logarithmic axis
 
 
-def figure(ladder: Mapping[str, Any]) -> Any:
+def figure(measurements: Mapping[str, Any]) -> Any:
     """Return a matplotlib Figure that compares kernels made for one scene with the general kernel: operations and time.
 
-    ``ladder`` holds the measurements, as :func:`symrot.bench.skip.measure` returns them; the figure has one row for
-    each motion.
+    ``measurements`` is the result of :func:`symrot.bench.skip.measure`; the figure has one row for each motion.
     """
     from matplotlib.figure import Figure
     from matplotlib.lines import Line2D
 
-    rows = ladder["rows"]
+    rows = measurements["rows"]
     page = Figure(figsize=(9.6, 1.6 + 0.38 * len(rows)))
     grid = page.add_gridspec(1, len(PANELS), left=0.245, right=0.985, top=0.83, bottom=0.14, wspace=0.08)
     for number, (key, unit, title) in enumerate(PANELS):
@@ -66,9 +65,9 @@ def figure(ladder: Mapping[str, Any]) -> Any:
     return page
 
 
-def save(ladder: Mapping[str, Any], path: Path) -> None:
-    """Write the figure that :func:`figure` draws of the measurements ``ladder`` to a file.
+def save(measurements: Mapping[str, Any], path: Path) -> None:
+    """Write to a file the figure that compares kernels made for one scene with the general kernel.
 
-    The suffix of ``path`` decides the format.
+    ``measurements`` is the result of :func:`symrot.bench.skip.measure`. The suffix of ``path`` decides the format.
     """
-    draw(lambda: figure(ladder), path)
+    draw(lambda: figure(measurements), path)

@@ -30,13 +30,26 @@ def check(
 ) -> list[Verdict]:
     """Check a claim (an equation as text or LaTeX), or all claims of a file, and return the verdicts.
 
-    ``stated`` is the context of a claim, as further keyword arguments of :func:`symrot.check`.
+    Parameters
+    ----------
+    source : str
+        The claim, or the path of the file.
+    assumptions : sequence of str
+        Hypotheses of the claim, such as ``"A > 0"``.
+    units : sequence of str
+        Units of the claim's quantities, such as ``"F=kg m/s^2"``.
+    repair : bool
+        Whether to search for a correction of each false claim.
+    progress : callable
+        Called with a line of text before the check of each claim of a file.
+    stated : mapping, optional
+        The context of the claim, as further keyword arguments of :func:`symrot.check`.
 
     Raises
     ------
     InputError
-        For a text that :func:`symrot.check` rejects, a file without claims, or hypotheses, units or a context together
-        with a file.
+        For a text that :func:`symrot.check` rejects, or a file without claims. Also for a file together with
+        ``assumptions``, ``units`` or ``stated``, because a file states these itself.
     """
     from symrot.checker.interface import check as check_text
     from symrot.checker.interface import verdicts_of_file
@@ -72,8 +85,9 @@ SIGNS = "=≈≃≤≥⩽⩾<>≠"
 def _is_file(source: str) -> bool:
     """Return whether ``source``, the argument of `symrot check`, is taken as the path of a file and not as a claim.
 
-    Text with one of the SIGNS, or with a backslash and without the ending .toml, is a claim, unless it is the path of
-    an existing .toml file and has no ``==``.
+    The name of an existing file that ends with .toml is a path, unless it contains ``==``. Any other text is a claim if
+    it contains a relation sign (:data:`SIGNS`), or if it contains a backslash, as LaTeX does, and does not end with
+    .toml. All remaining texts are paths.
     """
     is_text = any(sign in source for sign in SIGNS) or ("\\" in source and not source.endswith(".toml"))
     return not is_text or (source.endswith(".toml") and "==" not in source and Path(source).is_file())

@@ -163,8 +163,8 @@ def compared(first: Mapping[str, Any], second: Mapping[str, Any]) -> dict[str, A
     floors = [_least_errors(study) for study in (first, second)]
     if not methods:
         raise InputError(
-            "--compare: expected two studies with at least one method that reaches the same error in both, such as "
-            "1e-9, got studies without such a method"
+            "--compare: expected a method that reaches the same power of ten of the error, such as 1e-9, in both "
+            "studies, got studies that have no method and error in common; measure both with the same methods"
         )
     return {
         "format": "symrot comparison 1",

@@ -18,7 +18,7 @@ __all__ = ["LOOKS", "METHOD_LABELS", "OTHER", "OUTERMOST", "figure", "frontier",
 
 LEAST_ERROR = 1e-17  # smaller errors, such as zero, are drawn as this error
 APART = 0.042  # least distance between two names, relative to the panel's height
-OUTERMOST = 1.5  # runs with larger errors are not shown
+OUTERMOST = 1.5  # runs with this error or a larger one are not shown
 
 
 class Look(NamedTuple):
@@ -56,9 +56,10 @@ METHOD_LABELS = {
 
 
 def frontier(runs: Sequence[Mapping[str, Any]]) -> tuple[list[tuple[float, float]], list[tuple[float, float]]]:
-    """Split the runs of a method into two lists of points (error, time): its curve, and the other runs.
+    """Split the runs of a method into two lists of points (error, time): the points of its curve, and the others.
 
-    Both are in the order of increasing errors; runs with errors from OUTERMOST are left out.
+    A run is on the curve if no more accurate run is as fast. Both lists are in the order of increasing errors. Runs
+    with an error of ``OUTERMOST`` or more are left out.
     """
     points = sorted((max(float(run["error"]), LEAST_ERROR), float(run["seconds"])) for run in runs)
     points = [point for point in points if point[0] < OUTERMOST]

@@ -76,7 +76,7 @@ def patches(body: Body) -> list[Patch]:
 
 
 def how_drawn(body: Body) -> str:
-    """Return the sentence for a page that draws the body as a box; empty if the shape of the body is known."""
+    """Return the sentence which tells the reader that a body is drawn as a box; empty if the body's shape is known."""
     if body.parts or body.facets:
         return ""
     if body.about == "fixed_point" and _about_its_center(body) is None:
@@ -128,9 +128,10 @@ def _moved(rotation: Sequence[Sequence[Fraction]], point: Sequence[float], offse
 
 
 def _faces(shape: Shape) -> Iterator[tuple[dict[str, str], tuple[Coordinate, ...]]]:
-    """Yield for each face of a shape a map from the coordinate that is constant on it to its value, and the others.
+    """Yield a pair for each face of a shape: the coordinate that is constant on the face, and the other coordinates.
 
-    The ends of an angle from 0 to 2 pi are no faces. A shape with fewer than three coordinates is a face itself.
+    The constant coordinate is a map from its name to its value, such as ``{"radius": "R"}``. The ends of an angle from
+    0 to 2 pi are no faces. A shape with fewer than three coordinates is a face itself, without constant coordinate.
     """
     coordinates = shape.coordinates
     if len(coordinates) < 3:

@@ -166,8 +166,13 @@ def _middle(body: Floats, dcms: Floats, path: Floats) -> float:
     return max(0.0, (REACH + lowest - LOWER) / 2)
 
 
-def _draw(axes: Any, polygons: list[Floats], shades: list[float], path: Floats, part: float, middle: float) -> None:
-    """Draw one frame: the body, the axes of space, and the path of the body's axis, strong up to this frame."""
+def _draw(axes: Any, polygons: list[Floats], shades: list[float], path: Floats, elapsed: float, middle: float) -> None:
+    """Draw one frame: the body, the axes of space, and the path of the body's axis.
+
+    ``polygons`` are the faces of the body in space, and ``shades`` are their brightnesses, 0 to 1. ``elapsed`` is the
+    fraction of the film's time up to this frame: the path is drawn dark up to this time, and pale after it. ``middle``
+    is the height of the middle of the picture.
+    """
     from matplotlib.colors import to_rgb
     from mpl_toolkits.mplot3d.art3d import Poly3DCollection
 
@@ -180,12 +185,11 @@ def _draw(axes: Any, polygons: list[Floats], shades: list[float], path: Floats, 
         end[k] = REACH
         axes.plot(*np.array([np.zeros(3), end]).T, color=AXES, linewidth=1, zorder=1)
         axes.text(*(1.06 * end), name, color=AXES, fontsize=12, fontstyle="italic")
-    # shades: the brightness of each polygon
     colours = [tuple(shade * c for c in to_rgb(BODY)) for shade in shades]
     edges = EDGE if len(polygons) <= MOST_FLAT else colours  # a body of a few flat faces shows its edges
     axes.add_collection3d(Poly3DCollection(polygons, facecolors=colours, edgecolors=edges, linewidths=0.6, zorder=2))
     axes.plot(*path.T, color=TRAIL, alpha=0.3, linewidth=1, zorder=3)
-    axes.plot(*path[: max(2, round(part * len(path)))].T, color=TRAIL, linewidth=1.6, zorder=4)
+    axes.plot(*path[: max(2, round(elapsed * len(path)))].T, color=TRAIL, linewidth=1.6, zorder=4)
 
 
 def _polygons(patch: Patch) -> list[Floats]:

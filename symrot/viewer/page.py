@@ -20,7 +20,7 @@ LIBRARIES = "libraries.js"
 
 
 def page(scene: Scene, trajectory: Trajectory | None = None) -> str:
-    """Return the HTML text of a page that computes and shows the motion of a scene.
+    """Return the HTML text of a page that shows the motion of a scene.
 
     The same scene gives the same bytes.
 
@@ -29,8 +29,9 @@ def page(scene: Scene, trajectory: Trajectory | None = None) -> str:
     scene : Scene
         The scene.
     trajectory : Trajectory, optional
-        A motion to play. Without it, the page computes the scene's own motion, or plays it if a torque has samples,
-        jumps, kinks, or a formula that may have short pulses.
+        A motion for the page to play. Without it, the page's script computes the scene's own motion in the browser. If
+        a torque has samples, jumps, kinks, or a formula that may have short pulses, symrot computes the motion
+        beforehand, and the page plays it.
 
     Raises
     ------

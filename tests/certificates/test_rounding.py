@@ -116,6 +116,30 @@ def test_underflow_is_part_of_the_bound():
     assert 0 < bound.bound < 1e-318
 
 
+@pytest.mark.parametrize(
+    "body",
+    [
+        "atan2(x[2]/x[0], x[2]/x[0])",  # the angle of (0, 0): C computes 0 or pi by the signs of the zeros
+        "atan2(x[2]/x[0], x[2]/x[1])",
+        "atan2(x[2], x[2])",
+        "copysign(1.0, x[0]*x[2])",  # C computes -1 for x[0] < 0, although the product is 0
+        "copysign(1.0, x[0] - x[1])",
+        "copysign(x[0], -(x[1]*x[2]))",
+    ],
+)
+def test_a_result_that_depends_on_the_sign_of_a_computed_zero_has_no_bound(body):
+    operations = kernel(body)
+    box = {"x[0]": (Fraction(-2), Fraction(-1)), "x[1]": (Fraction(-2), Fraction(2)), "x[2]": (Fraction(0),) * 2}
+    with pytest.raises(InputError, match="no bound"):
+        bound_outputs(operations, {p: box[p] for p in operations.inputs}, budget=BUDGET, fresh=True)
+
+
+def test_the_sign_of_an_input_is_exact():
+    assert bound_of("copysign(1.0, x[0])", -1, 1).bound == 0
+    assert bound_of("copysign(1.0, x[0]*x[1])", 1, 2).bound == 0
+    assert bound_of("atan2(x[0], x[1])", 1, 2).bound == pytest.approx(2.0**-52)
+
+
 def test_fused_products_are_covered_where_nothing_else_takes_them():
     assert bound_of("x[0]*x[1] + x[2]", -1, 1).contraction_safe
     assert not bound_of("x[0]*x[1] + x[2] + (x[2] - x[0]*x[1])", -1, 1).contraction_safe

@@ -69,7 +69,7 @@ def test_a_true_formula_is_no_mistake():
 
 def test_a_number_without_a_step_or_a_symbol_without_a_value_is_refused():
     page = derivation("kinetic_energy")
-    with pytest.raises(InputError, match="first words of a step of this page"):
+    with pytest.raises(InputError, match="first words of a claim on this page"):
         value_of(page, Number("Energy:", "T", "No such", "J"), "t_handle")
     with pytest.raises(InputError, match="no value for dphi, dpsi, dtheta"):
         value_of(page, Number("Energy:", "T", "With two equal moments", "J"), "heavy_top_loops")

@@ -8,7 +8,7 @@ pytest.importorskip("matplotlib")
 from matplotlib.collections import PolyCollection
 from matplotlib.figure import Figure
 
-from symrot.report.curves import BAND_NOTE, columns_of, draw_curves, envelope, hidden_parts, is_too_fast
+from symrot.report.curves import BAND_NOTE, draw_curves, envelope, hidden_parts, is_too_fast, size_in_pixels
 
 
 def panel():
@@ -100,4 +100,4 @@ def test_an_unknown_curve_keeps_its_name_in_the_legend():
     axes = panel()
     draw_curves(axes, np.arange(4.0), [np.full(4, np.nan)], ["energy (no change)"])
     assert axes.get_legend_handles_labels()[1] == ["energy (no change)"]
-    assert columns_of(axes) == (900, 450)
+    assert size_in_pixels(axes) == (900, 450)

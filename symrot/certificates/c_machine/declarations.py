@@ -10,7 +10,7 @@ __all__ = ["Declarations"]
 
 
 class Declarations(Expressions):
-    """Reader of declarations: it records the names and types, and compiles the first values of variables."""
+    """Reader of C declarations: it records names and types, and translates first values of variables to functions."""
 
     def _declarator(self, base: Type) -> tuple[str, Type]:
         while self._take("*"):

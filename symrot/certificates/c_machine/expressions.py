@@ -1,4 +1,4 @@
-"""Expressions of C, compiled to functions of the variables."""
+"""Expressions of C, translated to Python functions that compute their values from the C variables."""
 
 import operator
 from collections.abc import Callable, Mapping
@@ -44,7 +44,11 @@ _OPERATIONS: Mapping[str, Callable[[Any, Any], Any]] = {
 
 
 class Expressions(Reader):
-    """Reader of C expressions: it reads an expression from the tokens and returns it compiled, as a :class:`Value`."""
+    """Reader of C expressions: it reads an expression from the tokens and returns it as a :class:`Value`.
+
+    A Value holds Python functions of the frame, the list of a C function's variables. One function computes the value
+    of the expression; for a variable, a second function computes its address, a pair (container, index).
+    """
 
     def _expression(self) -> Value:
         value = self._assignment()
@@ -74,9 +78,10 @@ class Expressions(Reader):
         return Value(kind, assign)
 
     def _changed(self, mark: str, kind: Type, place: Run, value: Value) -> Value:
-        """Return a compiled assignment such as ``a[i++] += b``, which computes the address of the variable once.
+        """Return an assignment such as ``a[i++] += b`` as a Value that computes the address of the variable once.
 
-        ``mark`` is the operation, such as ``+``; ``kind`` and ``place`` are the variable's type and compiled address.
+        ``mark`` is the operation, such as ``+``; ``kind`` is the variable's type, and ``place`` the function of the
+        frame that computes its address. ``value`` is the right side.
         """
         slot = self._slot()  # for the address
         before = self._at(kind, lambda f: f[slot])
@@ -200,7 +205,10 @@ class Expressions(Reader):
         return kind.size * self._length(kind.of) if kind.kind == "array" else 1
 
     def _at(self, kind: Type, place: Run) -> Value:
-        """Return the variable of type ``kind`` at the compiled address ``place``, as a compiled expression."""
+        """Return a C variable as a Value; ``kind`` is its type.
+
+        ``place`` is the function of the frame that computes the variable's address, a pair (container, index).
+        """
         if kind.kind == "array":
             # the address of the first element
 
@@ -359,9 +367,9 @@ def _within(position: int) -> int:
 
 
 def _boxed(run: Run) -> Run:
-    """Return the compiled address of a temporary variable that holds the value computed by ``run``.
+    """Return a function of the frame that calls ``run`` and returns the address of a new variable with its result.
 
-    A call of the returned function gives a pair ([value], 0): a list, and the index of the value in the list.
+    The address is the pair ([result], 0): a list, and the index of the result in the list.
     """
     return lambda f: ([run(f)], 0)
 

@@ -1,4 +1,4 @@
-"""Statements of C, compiled to functions that change the variables."""
+"""Statements of C, translated to Python functions that change the C variables."""
 
 from symrot.certificates.c_machine.declarations import Declarations
 from symrot.certificates.c_machine.values import Frame, Return, Run
@@ -37,7 +37,7 @@ def _jump(jump: type[Exception], value: Run = lambda f: None) -> Run:
 
 
 class Statements(Declarations):
-    """Reader of C statements: each is compiled to a Python function that executes the statement."""
+    """Reader of C statements: it returns each statement as a Python function that executes it."""
 
     def _block(self) -> Run:
         self._expect("{")

@@ -1,8 +1,8 @@
-"""Types and compiled expressions of the C text that a :class:`Machine` (machine.py) runs in Python.
+"""Types and expressions of the C text that a :class:`Machine` (machine.py) runs in Python.
 
 The address of a variable, and so a pointer, is a pair ``(container, index)``, called a place. The container is a list:
-an array, the fields of a structure, or the variables of a function (its frame). A compiled expression is a Python
-function of the frame.
+an array, the fields of a structure, or the variables of a function (its frame). An expression becomes a
+Python function that computes its value from the frame.
 """
 
 from collections.abc import Callable, Sequence
@@ -42,16 +42,16 @@ class Struct(NamedTuple):
 
 
 class Function(NamedTuple):
-    """A C function: the types of its result and parameters, its compiled body, and the number of its variables."""
+    """A C function: the types of its result and parameters, its body as a function, and the number of its variables."""
 
     result: Type
     parameters: list[Type]
-    body: list[Run]  # one element once the body is compiled
+    body: list[Run]  # one element, a function of the frame, once the body is read
     slots: list[int]  # one element: the number of variables
 
 
 class Value(NamedTuple):
-    """A compiled expression: its C type and the function ``run`` that computes its value from the frame.
+    """An expression of C: its type, and the Python function ``run`` that computes its value from the frame.
 
     For a variable, the function ``place`` computes its address, a pair (container, index); otherwise ``place`` is None.
     """
@@ -66,7 +66,7 @@ class Return(Exception):
 
 
 def called(function: Function, arguments: Sequence[Any]) -> Any:
-    """Call a compiled function with numbers, integers and pointers; return its result, or None if it has none."""
+    """Run a C function on numbers, integers and pointers; return its result, or None if it has none."""
     frame: Frame = [None] * function.slots[0]
     frame[: len(arguments)] = arguments
     try:

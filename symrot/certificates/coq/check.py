@@ -223,9 +223,10 @@ def _axioms(printed: str) -> tuple[str, ...]:
 
 
 def _results(name: str, text: str, complaint: str | None) -> list[TheoremResult]:
-    """Return the outcome of each theorem of a file; ``complaint`` is Coq's error message, or None.
+    """Return the outcome of each theorem of a Coq file; ``complaint`` is Coq's error message, or None.
 
-    The list is empty for the files of rules and of axioms.
+    The list is empty for two files that state no theorem about a kernel: ``rotation.v``, with general lemmas about
+    rotations, and ``assumptions.v``, which makes Coq print the axioms.
     """
     if name in (RULES, ASSUMPTIONS):
         return []

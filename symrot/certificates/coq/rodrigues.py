@@ -46,7 +46,8 @@ def _norm(parameters: tuple[str, ...], at: str = "") -> str:
 def _positive(parameters: tuple[str, ...], at: str = "") -> str:
     """Return a Coq tactic that proves the goal ``0 < S`` or ``S <> 0``, with S = 1 plus the squared ``parameters``.
 
-    The sum S is the text of :func:`_norm`, which describes ``at`` too.
+    S is the text that :func:`_norm` returns for the same arguments; with ``at`` = ``" t"`` the parameters are functions
+    of time.
     """
     return "(" + "; ".join(f"pose proof (pow2_ge_0 ({each}{at}))" for each in parameters) + "; lra)"
 

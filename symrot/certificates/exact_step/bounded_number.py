@@ -13,7 +13,10 @@ __all__ = ["DOUBLE", "PAIR", "Bounded", "UndecidedError", "point"]
 DOUBLE = 2.0**-53
 """Bound of the relative error of one operation on doubles."""
 PAIR = 2.0**-102
-"""Bound of the relative error of one operation on sums of two doubles; proven are 13*2^-106 (double_double.h)."""
+"""Bound of the relative error of one operation on sums of two doubles.
+
+The sources that double_double.h names prove the smaller bound 13*2^-106 for every operation.
+"""
 _UNDER = 2.0**-1060  # above the error of a result too small for all its digits
 _SMALL = 2.0**-900  # above numbers whose sums of two doubles lack digits
 _LEAST = ulp(0.0)  # the smallest positive double: a smaller product is computed as 0

@@ -41,7 +41,7 @@ __all__ = ["free_body_bounds"]
 
 CELLS = 64  # parts of the phase of a period
 MOST_PARTS = 600  # of the box of omega, with the parts that were divided
-LONGEST = 2.0**20  # revolutions of a phase in one step
+LONGEST = 2.0**20  # revolutions, in one step, of an angle of the motion, such as the phase of the elliptic functions
 SIZES = 1e298  # largest dt*(scale of omega) whose rounding error the C text computes without overflow
 SMALL_MODULUS = 0.7
 
@@ -151,19 +151,24 @@ class _Context:
     def _turn(
         self, phase: Place, slope: Bounded, count: int, t: Place, whole: Place, sine: Place, cosine: Place
     ) -> None:
-        """Store sine and cosine of ``rate*t + start``, as the C function ``turn`` does, with bounds of their errors.
+        """Store sine and cosine of ``rate*t + start`` with error bounds; this method replaces the C function ``turn``.
 
-        ``phase`` points to rate and start, each a sum of two doubles, in revolutions. ``t`` points to one interval of
-        times; sine and cosine for this interval are stored ``count`` times. The C function adds ``slope*whole`` to the
-        phase; here ``slope`` must be 0 and ``whole`` is ignored. InputError is raised for another slope, for steps of
-        too many revolutions, and for times above 1e298 (``SIZES``), in units of 1/(scale of omega).
+        ``phase`` points to rate and start, each a sum of two doubles, in revolutions. ``t`` points to one interval, the
+        times of all samples in units of the time scale (the C text multiplies seconds by a power of two near |omega|).
+        All ``count`` samples get the same sine and cosine, those of this interval. The C function also adds
+        ``slope*whole[i]`` to the phase of sample i; here ``slope`` must be 0, as it is for a modulus below 0.7, and
+        ``whole`` is ignored. InputError is raised for another slope, for more than ``LONGEST`` revolutions, and for
+        times above ``SIZES``.
         """
         values, first = phase
         rate, start = pair_total([values[first], values[first + 1]]), pair_total([values[first + 2], values[first + 3]])
         size = t[0][t[1]]
         turns = rate.most * size.most
         if not (slope.is_exact and slope.low == 0 and turns <= LONGEST):
-            raise InputError(f"expected steps of at most {LONGEST:.0f} revolutions of a phase, got {turns:.3g}")
+            raise InputError(
+                f"expected a range of dt in which each angle of the motion, such as the precession, grows by at most "
+                f"{LONGEST:.0f} revolutions, got {turns:.3g} revolutions; write a smaller largest dt"
+            )
         if not size.most <= SIZES:
             raise InputError(f"expected dt times |omega| of at most {SIZES}, got {size.most:.3g}")
         # the error of the phase: of its rate and start, and of the roundings in `phase_rest`. Where `small` moves the
@@ -324,7 +329,7 @@ def free_body_bounds(source: str, name: str, moments: list[float], box: Box) -> 
     ------
     InputError
         If no bounds are known: near a rotation about the middle axis, for omega whose size varies by a factor above
-        about 2^8, for steps of too many revolutions, or for ranges that are too wide.
+        about 2^8, for steps of more than ``LONGEST`` revolutions, or for ranges that are too wide.
     CertificateError
         If the C text is no exact step of a free body.
     """
@@ -349,9 +354,8 @@ def _bounds(
         count += 1
         if count > MOST_PARTS:
             raise InputError(
-                f"{MIDDLE}, and ranges on which symrot can bound the errors of the step, got ranges on which it finds "
-                f"no bounds even after it divides them into {MOST_PARTS} parts; write narrower ranges, or take "
-                "--step taylor --order 16"
+                f"{MIDDLE}, got ranges on which symrot finds no bound of the step's errors, although it divided them "
+                f"into {MOST_PARTS} parts; write narrower ranges, or take --step taylor --order 16"
             )
         context.scale = scale
         try:
@@ -368,7 +372,7 @@ def _bounds(
             parts += [(scale, half) for half in halves(part)]
     if not all(x < inf for x in rounding):
         raise InputError(
-            "expected narrower ranges of omega and dt, in which the errors of the step have bounds, got ranges without "
-            "bounds"
+            "expected ranges of omega and dt on which symrot finds a finite bound of the step's errors, got ranges on "
+            "which it finds none; write narrower ranges"
         )
     return tuple(rounding), tuple(truncation)

@@ -86,14 +86,16 @@ def power_near(largest: float) -> float:
 def halves(part: Part) -> tuple[Part, Part]:
     """Return the two halves of ``part``, ranges of the components of omega, divided in the middle of the widest range.
 
-    InputError is raised if no double is inside that range, so that the part cannot be divided.
+    InputError is raised if no double is inside the widest range. Then the part cannot be divided, although the step's
+    errors have no bound on it, for example because the modulus of the elliptic functions is 0.7 or more.
     """
     widths = [abs(high - low) for low, high in part]
     place = widths.index(max(widths))
     low, high = part[place]
     middle = (low + high) / 2
     if not low < middle < high:
-        raise InputError(f"{MIDDLE}, got one on the border")
+        omega = ", ".join(f"{low:g}" for low, _ in part)
+        raise InputError(f"{MIDDLE}, got omega near ({omega}), where symrot finds no bound of the step's errors")
     return tuple((low, middle) if i == place else each for i, each in enumerate(part)), tuple(
         (middle, high) if i == place else each for i, each in enumerate(part)
     )

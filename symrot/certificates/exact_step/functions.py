@@ -26,10 +26,10 @@ SLACK = 1e-12  # relative error of intervals computed with doubles from <math.h>
 
 
 def pair(value: Bounded) -> list[Any]:
-    """Return a number as a sum of two doubles: [high part, low part].
+    """Return a number in the form of a sum of two doubles of the C text: a list [high part, low part].
 
     The high part is ``value`` rounded to a double, with ``value`` itself in its attribute ``pair``, from which
-    :func:`pair_total` recovers it. The low part is 0 if the number is exact, else None.
+    :func:`pair_total` recovers it. The low part is not computed: it is 0 if ``value`` is an exact double, else None.
     """
     high = value.rounded(DOUBLE)
     return [Bounded(high.low, high.high, high.error, high.relative, value), point(0.0) if value.is_exact else None]
@@ -51,7 +51,10 @@ def pair_total(doubles: list[Any]) -> Bounded:
 
 
 def with_pairs(operation: Callable[..., Bounded]) -> Callable[..., list[Any]]:
-    """Return the function of sums of two doubles, lists [high, low], that applies ``operation`` to their values."""
+    """Return a function that applies ``operation`` to numbers in the form of :func:`pair`, lists [high, low].
+
+    ``operation`` takes and returns a Bounded; the returned function takes and returns such lists.
+    """
     return lambda *pairs: pair(operation(*map(pair_total, pairs)))
 
 

@@ -181,7 +181,11 @@ _OWN: Mapping[str, tuple[str, Callable[..., Any]]] = {
 
 
 def _states(source: str, omega_scale: Fraction) -> list[_State]:
-    """Return pairs (omega and unit quaternion, size dt of a step) that follow from the hash of a C text."""
+    """Return pairs (state, size dt of a step) that follow from the hash of a C text; a state is omega and a quaternion.
+
+    ``omega_scale``, in rad/s, is a factor of omega: its components are at most 1.25*omega_scale. dt is between
+    0.25/omega_scale and 2.25/omega_scale.
+    """
     states = []
     for k in range(STATES):
         a, b, c, d, *four = sha256(f"{k} {source}".encode()).digest()[:8]

@@ -29,7 +29,7 @@ FACTOR = 8
 
 
 class _NoRootError(ArithmeticError):
-    """Raised for the square root of a number that has no square root modulo the prime."""
+    """Raised for the square root of a number that has no square root modulo the prime ``PRIME`` = 2^127 - 1."""
 
 
 def require_limits(file: str, operations: Operations) -> None:

@@ -138,7 +138,11 @@ class _EqualityProver:
         return {place: self.values[index] for place, index in self.operations.outputs}
 
     def _outside_series(self) -> set[int]:
-        """Return the indices of the nodes that outputs need otherwise than in the series of a conditional."""
+        """Return the indices of the nodes that the outputs use outside truncated series.
+
+        A truncated series is the first value of a conditional ``x*x < c ? series : formula``, by which the C text
+        computes a function such as (x - sin x)/x^3 near x = 0.
+        """
         outside: set[int] = set()
         waiting = [index for _, index in self.operations.outputs]
         while waiting:
@@ -162,8 +166,9 @@ class _EqualityProver:
             return {index}
         if node[0] not in ("add", "mul"):
             raise CertificateError(
-                f"{self.operations.name}: expected the series by which a conditional replaces a function "
-                "to be a polynomial, got another formula"
+                f"{self.operations.name}: expected a conditional x*x < c ? series : formula in the C text, in which "
+                "the series of a function such as (x - sin(x))/x^3 consists of constants, sums and products, got one "
+                f"with the operation {node[0]!r}"
             )
         return {index} | self._below(node[1], leaf) | self._below(node[2], leaf)
 
@@ -246,8 +251,8 @@ class _EqualityProver:
                 self.truncations.append(self._truncated(name, limit, self._coefficients(near, square)))
                 return self.fractions.generator(atom)
         raise CertificateError(
-            f"{self.operations.name}: expected the series of a function that the formula contains, got another "
-            "polynomial"
+            f"{self.operations.name}: expected each conditional x*x < c ? series : formula in the C text to compute a "
+            "function in the stated formulas, such as (x - sin(x))/x^3, got one that computes none of these functions"
         )
 
     def _coefficients(self, index: int, leaf: int) -> list[Fraction]:

@@ -1,7 +1,8 @@
 """Exact arithmetic with fractions of polynomials over the rationals, and SymPy formulas as such fractions.
 
-The proofs of laws use it, and the proofs that a C text computes its formulas. Both kinds of proof are checked
-independently, without polynomials, by :mod:`symrot.certificates.exact_check`.
+Two kinds of proof use this arithmetic: that a kernel's formulas obey a law (an identity, such as that a dcm is
+orthogonal), and that a C text computes the formulas. :mod:`symrot.certificates.exact_check` checks both kinds
+independently, without polynomials.
 """
 
 from abc import ABC, abstractmethod

@@ -117,9 +117,11 @@ class LawProver(FormulaReader):
         """
         self.decided = {(left, right): relation for left, relation, right in decided}
         hypotheses = [self.read(relation) for relation in self.law.relations]
-        if any(below != 1 for _, below in hypotheses):
+        divisors = [below for _, below in hypotheses if below != 1]
+        if divisors:
             raise CertificateError(
-                f"{self.name}: expected polynomials as hypotheses of {self.law.text!r}, got a quotient"
+                f"{self.name}: expected hypotheses without divisions in the law {self.law.text!r}, got a division by "
+                f"{divisors[0]}; multiply the hypothesis by it"
             )
         self.hypotheses = [above for above, _ in hypotheses]
         fractions = [self.read(entry) for entry in self.law.vanishing]
@@ -330,8 +332,10 @@ class LawProver(FormulaReader):
         return cosine, add(multiply(a[1], b[0]), multiply(a[0], b[1]))
 
     def _multiple(self, unit: PolyElement, coefficient: Fraction) -> tuple[Quotient, Quotient]:
-        """Return the pair (cosine, sine) of ``coefficient*unit``, an integer multiple of a base angle such as x/2."""
-        # ``unit`` is a monomial such as x
+        """Return the pair (cosine, sine) of ``coefficient*unit``, an integer multiple of a base angle such as x/2.
+
+        ``unit`` is a monomial, such as x.
+        """
         base = self._base(unit, coefficient)
         first = unit * QQ(base.numerator, base.denominator)
         result = pair = self._pair(unit, first)
@@ -346,8 +350,8 @@ class LawProver(FormulaReader):
     def _base(self, unit: PolyElement, coefficient: Fraction) -> Fraction:
         """Return b such that the angles of the law are integer multiples of ``b*unit``, the base angle of ``unit``.
 
-        For ``unit`` = x, b is 1/2 if the law contains x/2 and x. BaseAngleTooLarge is raised if ``coefficient*unit`` is
-        no integer multiple of the base angle that was assumed so far.
+        ``unit`` is a monomial. For ``unit`` = x, b is 1/2 if the law contains x/2 and x. BaseAngleTooLarge is raised if
+        ``coefficient*unit`` is no integer multiple of the base angle that was assumed so far.
         """
         if unit in self.angle_functions and unit in self.arcs.values():
             if coefficient.denominator != 1:
@@ -367,10 +371,11 @@ class LawProver(FormulaReader):
         return known
 
     def _pair(self, unit: PolyElement, angle: PolyElement) -> tuple[Quotient, Quotient]:
-        """Return the pair (cosine, sine) of ``angle``, the base angle (:meth:`_base`) of ``unit``, such as x/2 for x.
+        """Return the pair (cosine, sine) of a base angle (:meth:`_base`), each a fraction of polynomials.
 
-        The first call for ``unit`` makes two new generators, variables of the polynomials; later calls return the same
-        pair. For an arc tangent, cosine and sine are the fractions found by :meth:`arc`.
+        ``unit`` is a monomial, such as x, and ``angle`` is its base angle, such as x/2. The first call for ``unit``
+        makes two new generators, variables of the polynomials; later calls return the same pair. For an arc tangent,
+        cosine and sine are the fractions found by :meth:`arc`.
         """
         if unit not in self.angle_functions:
             cosine, sine = self.generator(f"cos({angle})"), self.generator(f"sin({angle})")

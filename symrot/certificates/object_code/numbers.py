@@ -1,8 +1,10 @@
 """The effect of SSE2 and AVX instructions on numbers: arithmetic, comparisons, masks, fused operations.
 
-The table ``NUMERIC`` maps instructions to functions from the sources' words to the result's words. The suffix ``pd``
-means packed doubles, ``ss`` a scalar float: packed instructions act on all numbers of a register, scalar instructions
-on the first.
+The table ``NUMERIC`` maps the name of an instruction, such as ``addpd``, to the Python function that executes it. The
+function takes the instruction's source operands, each as a list of 32-bit words, and returns the result in this form; a
+word is a symbolic value. The last two letters of a name are a suffix. It says whether the numbers are packed (``p``)
+or scalar (``s``), and whether they are doubles (``d``) or floats (``s``): packed instructions act on all numbers of a
+register, scalar instructions on the first.
 """
 
 from collections.abc import Callable
@@ -39,7 +41,8 @@ def _lanes(state: MachineState, words: Words, width: int) -> list[int]:
 def _each(suffix: str, operation: Callable[..., int], arguments: int = 2) -> Numeric:
     """Return the function for an instruction that applies ``operation`` to numbers, element by element.
 
-    The operands are the last ``arguments`` of the instruction's sources.
+    ``suffix`` is ``"pd"``, ``"ps"``, ``"sd"`` or ``"ss"``, such as ``"pd"`` for packed doubles. ``operation`` takes
+    ``arguments`` numbers, one from each of the instruction's last ``arguments`` source operands.
     """
     width, is_packed = WIDTHS[suffix[1]], suffix[0] == "p"
 

@@ -100,7 +100,7 @@ class Cursor:
     def next(self) -> Token:
         """Return the next token and move past it."""
         if self.index >= len(self.tokens):
-            raise self.fail("another token")
+            raise self.fail("more C text")
         self.index += 1
         return self.tokens[self.index - 1]
 

@@ -413,7 +413,11 @@ def _heads(cursor: Cursor, scope: _Scope, size: str) -> None:
 
 
 def _blocks(cursor: Cursor, reader: _BodyReader, scope: _Scope) -> None:
-    """Read a loop over blocks of samples, computed with ``symrot_math.h`` and, for large angles, with libm."""
+    """Read a loop over blocks of samples, computed with ``symrot_math.h`` and, for large angles, with libm.
+
+    The C text adds ``symrot_far(x)``, which is 0 for an angle x in the range of ``symrot_math.h``, to the variable
+    ``beyond``. If the sum is not 0 at the end of a block, a second loop computes the block again with libm.
+    """
     _heads(cursor, scope, "SYMROT_BLOCK")
     cursor.expect("uint32_t" if reader.real == "float" else "uint64_t", "beyond", "=", "0", ";")
     far = "symrot_farf" if reader.real == "float" else "symrot_far"
@@ -434,8 +438,8 @@ def _blocks(cursor: Cursor, reader: _BodyReader, scope: _Scope) -> None:
     range_test.expect(";")
     if range_test.peek() or not reader.vectorised_angles <= tested:
         raise range_test.fail(
-            f"a statement that adds {far}(x) to the variable `beyond` for each argument x of a sine or cosine, and "
-            "after it the end of the loop"
+            f"one last statement `beyond += {far}(x) + ..;` in the loop, with a term {far}(x) for each argument x of a "
+            "sine or cosine, as symrot prints it"
         )
     reader.vectorised_angles = None
     cursor.expect(*["const", "size_t", "again", "=", "beyond", "==", "0", "?", "start", ":", "end", ";"])

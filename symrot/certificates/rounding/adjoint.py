@@ -195,7 +195,9 @@ def _sign(state: _ErrorPass, node: Node, operands: Sequence[Array]) -> tuple[Arr
     if node[0] == "abs":
         return size, None
     b = operands[1]
-    either = np.stack([-size[1], size[1]])
+    # The sign of a computed zero says nothing: 0.0*(-1.0) is -0.0. The sign of an input is exact.
+    largest = size[1] if state.graph.exact[node[2]] else np.full_like(size[1], inf)
+    either = np.stack([-largest, largest])
     return np.where(b[0] > 0, size, np.where(b[1] < 0, intervals.negative(size), either)), None
 
 
@@ -212,6 +214,9 @@ def _angle(state: _ErrorPass, node: Node, operands: Sequence[Array]) -> tuple[Ar
         state.outside |= length[1] < state.region.clearance**2
     state.cuts[len(state.values)] = intervals.contains_zero(y) & (x[0] < 0)
     value, error = state.rounded(np.clip(functions.arc_tangent(y, x), -pi, pi), 2 * state.libm_ulp)
+    if not state.region.clearance:  # the angle of (0, 0) is not defined, and C computes 0 or pi by the sign of a zero
+        undefined = intervals.contains_zero(y) & intervals.contains_zero(x)
+        value = np.where(undefined, np.array([[-inf], [inf]]), value)
     return value, error
 
 
@@ -469,16 +474,19 @@ def evaluate(
 
 
 def _forward_pass(state: _ErrorPass, computed: _ErrorPass, node: Node) -> Array | None:
-    """Append a node's intervals to ``state.values`` and ``computed.values``; return a bound of its error, or None."""
-    # Contains the exact and the computed value. In a graph without branches, ``computed`` is the same object as
-    # ``state``.
+    """Append intervals of a node's value to ``state.values`` and ``computed.values``; return a bound of its error.
+
+    The interval in ``state.values`` contains the exact value and the computed, rounded value. The interval in
+    ``computed.values`` contains the computed value and may be narrower. In a graph without branches, ``computed`` is
+    the same object as ``state``. The bound is None for an operation without rounding error.
+    """
     value, error = FORWARD[node[0]](state, node, [state.values[i] for i in operand_places(node)])
     state.values.append(value)
     if state.centred is not None:
         state.centred.close(node, operand_places(node), error)
     if computed is not state:
-        # Contains only the computed value, and may be narrower: a box assumes the branches that computed values take,
-        # and exact values close to a border may lie on its other side.
+        # narrower: a box assumes the branches that computed values take, and exact values close to a border may lie on
+        # its other side
         computed_value, error = FORWARD[node[0]](computed, node, [computed.values[i] for i in operand_places(node)])
         both = np.stack([np.maximum(value[0], computed_value[0]), np.minimum(value[1], computed_value[1])])
         computed.values.append(np.where(both[0] <= both[1], both, value))

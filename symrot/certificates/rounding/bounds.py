@@ -118,8 +118,8 @@ def bound_tasks(
     if strangers:
         known = ", ".join(operations.inputs)
         raise InputError(
-            f"{operations.name}: expected only the inputs {known} in the groups of inputs that form unit vectors, "
-            f"got {strangers[0]}"
+            f"{operations.name}: expected unit vectors whose components are among the inputs {known}, got one with the "
+            f"component {strangers[0]}"
         )
     tasks_by_output = {}
     for place, index in operations.outputs:

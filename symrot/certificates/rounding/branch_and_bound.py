@@ -171,9 +171,10 @@ class _BoundSearch:
         return np.concatenate(boxes, axis=2), np.concatenate(decided, axis=1)
 
     def cut(self, parts: _Parts, branch: int) -> Array:
-        """Return the boxes of ``parts``, reduced to points at which the part's undecided condition takes ``branch``.
+        """Return the boxes of ``parts``, each shrunk to the points at which its undecided condition has one outcome.
 
-        A box is reduced only if the condition compares an input with a constant; otherwise it stays as it is.
+        ``branch`` is the outcome: 1 where the condition holds, 0 where it does not. A box is shrunk only if the
+        condition compares an input with a constant; otherwise it stays as it is.
         """
         boxes = parts.boxes.copy()
         for number, (relation, i, j) in enumerate(self.graph.conditions):

@@ -17,7 +17,10 @@ __all__ = ["CentredForms"]
 # Each interval is widened by the bounds of the rounding errors made so far, so that it contains the exact and the
 # computed value of the polynomial.
 class _CentredForm:
-    """The mean value form of one node on each box: a polynomial, known by its value at the middle and its gradient."""
+    """The mean value form, on each box, of the result of one operation (a node) that is a polynomial in the inputs.
+
+    The form encloses the polynomial by its value at the middle of the box and its gradient on the box.
+    """
 
     # ``deviation``: at every point of a box, the exact value of the node, its computed value and all numbers between
     # them differ from the polynomial by at most this.

@@ -1,7 +1,8 @@
 """Interval arithmetic for rounding bounds: float64 arrays of shape (2, n), the lower and upper ends of n intervals.
 
-Results are not rounded outward if the operation is known to be exact: the upper end of 1*1 stays 1, since numbers just
-above 1 have twice the rounding error. With ``+ - * / sqrt`` alone, results are the same on every machine.
+Results are not rounded outward if the operation is known to be exact: the upper end of 1*1 stays 1. An upper end just
+above 1 would double the bound of the next rounding error, because doubles above 1 are twice as far apart as those below
+1. With ``+ - * / sqrt`` alone, results are the same on every machine.
 """
 
 from typing import TypeAlias

@@ -181,7 +181,7 @@ def largest_box(
         low, high = (middle, high) if holds(middle) else (low, middle)
     if not low:
         raise InputError(
-            f"{operations.name}: expected a target error that the error bounds do not exceed at least on narrow ranges "
-            f"around the midpoints of the given ones, got {target:g}; choose a larger target"
+            f"{operations.name}: expected a target error of at least the error bound on narrow ranges around the "
+            f"midpoints of the ranges, got {target:g}, which is less; choose a larger target"
         )
     return low, resized(box, low, chosen)

@@ -243,8 +243,8 @@ def check_bounds(
             if not _alike(item, recomputed):
                 raise CertificateError(
                     f"{operations.name}: expected the error bound of {place} that symrot computes on the same ranges, "
-                    f"{recomputed['units']} units of {unit:g}, got {item['units']} units, and "
-                    f"{_differing(item, recomputed)!r} differs; certify the kernel again"
+                    f"{recomputed['units']} units of {unit:g}, got {item['units']} units and another value of the "
+                    f"entry {_differing(item, recomputed)!r}; certify the kernel again"
                 )
 
 
@@ -282,12 +282,14 @@ def _check_precision(
             )
         if at.size and not ((task.box[0] <= at) & (at <= task.box[1])).all():
             raise CertificateError(
-                f"{name}: expected a point in the ranges of inputs as the worst point of {item['output']}, got another"
+                f"{name}: {item['output']}: expected 'at', the point with the largest error that the search found, to "
+                "be in the ranges of the inputs, got a point outside; certify the kernel again"
             )
         least = error_at_point(task, at)
         # a bound below the error at its stored point is refuted
         if not least <= float.fromhex(item["pointwise"]) * (1 + 1e-9) or float.fromhex(item["pointwise"]) > bound:
             raise CertificateError(
                 f"{name}: expected an error bound of {item['output']} of at least {least / unit:.6g} units of "
-                f"{unit:g}, because the error at the stored worst point can be that large, got {item['units']} units"
+                f"{unit:g}, since the error can be that large at the point 'at' of the certificate, got "
+                f"{item['units']} units; certify the kernel again"
             )

@@ -38,11 +38,14 @@ def leading_terms(
     rates: Program, method: RungeKutta | TaylorSeries | WithDerivatives, states: Sequence[str],
     box: Mapping[str, tuple[Fraction, Fraction]],
 ) -> tuple[Program, tuple[list[Terms], ...]]:  # fmt: skip
-    """Return the rates, and the coefficients of h^(n+1), h^(n+2), .. of motion minus step, where n is the order.
+    """Return the rates as expanded polynomials, and the first coefficients of the truncation error of a step.
 
-    Each coefficient is a list with a polynomial for each state. There are no coefficients if the rates are no
-    polynomials, if n is 9 or more, or if the coefficients have too many terms. Except in the first two cases the rates
-    are returned expanded, which makes bounds from intervals tighter.
+    The truncation error, motion minus step, is a power series in the size h of the step. With n for the order of the
+    method, it begins with h^(n+1). The result has the coefficients of h^(n+1) and h^(n+2), but none above h^9; each
+    coefficient is a list with a polynomial for each state. Intervals give tighter bounds of expanded rates.
+
+    If the rates are no polynomials, or if n is 9 or more, the rates are returned as they are, without coefficients. If
+    a Taylor coefficient of the motion has more than ``MOST_TERMS`` terms, only the expanded rates are returned.
 
     Parameters
     ----------

@@ -82,9 +82,10 @@ def _defect(tree: Tree, method: RungeKutta, most: Fraction) -> Fraction:
     total = sum((b * weights[stage] for stage, b in method.weights.items()), Fraction(0))
     defect = abs(total - Fraction(1, _density(tree)))
     if defect > most:
-        got = total if not method.rounded else f"{float(total)!r}, by {float(defect):.1e},"
+        got = total if not method.rounded else f"{float(total)!r} (the difference is {float(defect):.1e})"
         raise CertificateError(
             f"{method.name}: expected a method of order {method.order}, got one that violates the order condition "
-            f"of a rooted tree with {_size(tree)} node{'s' * (_size(tree) > 1)}: {got} instead of 1/{_density(tree)}"
+            f"of a rooted tree with {_size(tree)} node{'s' * (_size(tree) > 1)}: the sum of products of its "
+            f"coefficients must be 1/{_density(tree)}, but is {got}"
         )
     return defect

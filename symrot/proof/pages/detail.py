@@ -39,8 +39,8 @@ def excerpt(whole: Page, number: int, detail: bool = False) -> Page:
     number : int
         The number of the step; the first is 1.
     detail : bool
-        Whether the new page also shows the expressions between the two sides of the step's equation, as far as they
-        fit on a screen.
+        Whether the new page also shows the calculation from the left to the right side of the step's equation, as far
+        as it fits on a screen.
 
     Raises
     ------

@@ -33,9 +33,11 @@ def total(items: Sequence[Finding]) -> str:
 
 
 def lines(survey: Survey) -> list[str]:
-    """Return the lines of a table: a title for each document, one line per claim or more if it does not hold, a count.
+    """Return the findings about the claims of documents as lines of text.
 
-    ``survey`` is the result of :func:`symrot.report.errata.entries.survey`.
+    For each document there are its title, the claims, and a sentence that counts them. A claim that holds has one line;
+    any other claim has more lines, with what is printed, what is right and why. ``survey`` is the result of
+    :func:`symrot.report.errata.entries.survey`.
     """
     text: list[str] = []
     for source, items in survey:
