@@ -3,8 +3,8 @@
 Each message is one sentence: the place, the expected value and the value that arrived.
 
 The command line prints the message and exits with code 2, or with code 1 if an audit fails. :class:`InputError` is also
-a ``ValueError``, because an argument has an unusable value. The other exceptions are no ``ValueError``: they report the
-outcome of a computation, which an ``except ValueError`` must not hide.
+a ``ValueError``, because an argument has an unusable value. The other exceptions do not derive from ``ValueError``,
+because they report the outcome of a computation, which an ``except ValueError`` must not hide.
 """
 
 from collections.abc import Iterable

@@ -41,7 +41,7 @@ SYMROT_INLINE double symrot_chosen(uint64_t condition, double x, double y)
     return symrot_of_bits((symrot_bits(x) & mask) | (symrot_bits(y) & ~mask));
 }
 
-/* 1 where a < b, else 0; for finite numbers: by bits, since not all vectors compare */
+/* 1 where a < b, else 0; for finite numbers, a not -0.0: by bits, since not all vectors compare */
 SYMROT_INLINE uint64_t symrot_less(double a, double b) { return symrot_bits(a - b) >> 63; }
 
 /* 1 where a == b, else 0; for finite numbers: by bits, since not all vectors compare */
@@ -50,7 +50,7 @@ SYMROT_INLINE uint64_t symrot_same(double a, double b) { return (symrot_bits(fab
 /* a < b ? x : y, without a branch */
 SYMROT_INLINE double symrot_select_lt(double a, double b, double x, double y)
 {
-    return symrot_chosen(symrot_less(a, b), x, y);
+    return symrot_chosen(symrot_less(a + 0.0, b), x, y);
 }
 
 /* a == b ? x : y, without a branch */
@@ -62,7 +62,7 @@ SYMROT_INLINE double symrot_select_eq(double a, double b, double x, double y)
 /* a >= b ? x : y, without a branch */
 SYMROT_INLINE double symrot_choose_ge(double a, double b, double x, double y)
 {
-    return symrot_chosen(symrot_less(a, b), y, x);
+    return symrot_chosen(symrot_less(a + 0.0, b), y, x);
 }
 
 /* 1 where |x| is beyond the range of symrot_sin and symrot_cos, else 0 */
@@ -178,7 +178,7 @@ SYMROT_INLINE float symrot_chosenf(uint32_t condition, float x, float y)
     return symrot_of_bitsf((symrot_bitsf(x) & mask) | (symrot_bitsf(y) & ~mask));
 }
 
-/* 1 where a < b, else 0; for finite numbers: by bits, since not all vectors compare */
+/* 1 where a < b, else 0; for finite numbers, a not -0.0: by bits, since not all vectors compare */
 SYMROT_INLINE uint32_t symrot_lessf(float a, float b) { return symrot_bitsf(a - b) >> 31; }
 
 /* 1 where a == b, else 0; for finite numbers: by bits, since not all vectors compare */
@@ -187,7 +187,7 @@ SYMROT_INLINE uint32_t symrot_samef(float a, float b) { return (symrot_bitsf(fab
 /* a < b ? x : y, without a branch */
 SYMROT_INLINE float symrot_select_ltf(float a, float b, float x, float y)
 {
-    return symrot_chosenf(symrot_lessf(a, b), x, y);
+    return symrot_chosenf(symrot_lessf(a + 0.0f, b), x, y);
 }
 
 /* a == b ? x : y, without a branch */
@@ -199,7 +199,7 @@ SYMROT_INLINE float symrot_select_eqf(float a, float b, float x, float y)
 /* a >= b ? x : y, without a branch */
 SYMROT_INLINE float symrot_choose_gef(float a, float b, float x, float y)
 {
-    return symrot_chosenf(symrot_lessf(a, b), y, x);
+    return symrot_chosenf(symrot_lessf(a + 0.0f, b), y, x);
 }
 
 /* 1 where |x| is beyond the range of symrot_sin and symrot_cos, else 0 */

@@ -12,7 +12,7 @@ from pathlib import Path
 from typing import Any
 
 from symrot.certificates import exact_check
-from symrot.certificates.certificate import Data, certificate_json, intended_text
+from symrot.certificates.certificate import Data, certificate_json, intended_text, statement_of_name
 from symrot.certificates.readback.header import check_header
 from symrot.certificates.readback.intended_constants import intended_value
 from symrot.certificates.readback.javascript import compare_javascript
@@ -144,10 +144,11 @@ def _audited(path: Path, data: Data, symrot_statement: Callable[[Data], Data | N
     # formulas, laws and their proofs, domain, units and assumptions, proven exactly in laws/
     statement = symrot_statement(data)
     if statement is None:
+        _compare(path, data, statement_of_name(name))
         return [
             *findings,
-            f"symrot has no kernel {name}, so its formulas and laws were not compared with symrot's own; if it was "
-            "emitted from a scene, pass that scene with --scene",
+            f"symrot has no kernel {name}, so its formulas, laws, domain, units and comments were not compared with "
+            "symrot's own; if it was emitted from a scene, pass that scene with --scene",
         ]
     _compare(path, data, statement)
     return [

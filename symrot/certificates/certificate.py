@@ -37,6 +37,7 @@ __all__ = [
     "intended_text",
     "proven_statement",
     "seal",
+    "statement_of_name",
     "unproven_statement",
     "with_sections",
 ]
@@ -147,10 +148,13 @@ def unproven_statement(kernel: KernelUnderTest) -> Data:
             "formulas": [[place, symbol, str(formula)] for place, (symbol, formula) in kernel.formulas.items()],
             "functions": _functions([*(value for _, value in kernel.named), *(f for _, f in kernel.formulas.values())]),
         },
-        "coq": coq_section(kernel.name),
-        "flags": flags_section(),
-        "trusted": TRUSTED,
+        **statement_of_name(kernel.name),
     }
+
+
+def statement_of_name(name: str) -> Data:
+    """Return the parts of a certificate that need only the kernel's name: Coq theorem, compiler flags, assumptions."""
+    return {"coq": coq_section(name), "flags": flags_section(), "trusted": TRUSTED}
 
 
 def _functions(formulas: Sequence[Expr]) -> list[list[str]]:

@@ -49,7 +49,7 @@ DIGITS = Context(prec=190, Emax=120)  # arithmetic of laws and exact values; aft
 LARGEST_FILE = 16_000_000  # bytes
 LONGEST_TEXT = 200_000  # words of a function or formula, including the functions that it calls
 LONGEST_NUMBER = 50_000  # binary digits of a numerator or denominator
-MATH_HEADER_SHA256 = "ec48bca7f8eb7ed77612704a0672155f4af0330d0679ba59524c5cfb5f5b0a19"  # of symrot_math.h
+MATH_HEADER_SHA256 = "d25d5ab44d3bae69422acb133619e7f070423bbb9697d13d5fd1299221c77b2c"  # of symrot_math.h
 
 FUNCTIONS = {"sin": 1, "cos": 1, "sqrt": 1, "atan2": 2, "copysign": 2}  # name -> number of arguments
 FUNCTIONS |= dict.fromkeys(("tan", "asin", "acos", "atan", "exp", "log", "sinh", "cosh", "tanh"), 1)

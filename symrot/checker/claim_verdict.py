@@ -48,8 +48,9 @@ __all__ = [
 Limit = OutOfOperations | TimeUp
 
 MOST_SECONDS = 60
-"""The limit on the processor time for one claim, in seconds. It is a last resort: MOST_OPERATIONS, the limit that
-normally ends a check, take some ten seconds; but operations inside SymPy are not counted."""
+"""The limit on the processor time for one claim, in seconds. Normally a check ends earlier, after MOST_OPERATIONS
+operations, which take about ten seconds. This limit ends a check that spends its time inside SymPy, whose operations
+are not counted."""
 FOR_ALL_VALUES = (
     "== claims that both sides are equal for all values; to state a relation between the letters, write one ="
 )
@@ -373,8 +374,9 @@ def _diagnosed(claim: Claim, decision: Decision, verdict: Verdict) -> Verdict:
 
 
 def _domain(claim: Claim) -> Diagnosis:
-    """Return the diagnosis "domain" for a true claim with only one side defined everywhere, ``x == x**2/x``; else
-    "none".
+    """Return the diagnosis "domain" for a true claim with only one side defined everywhere, such as ``x == x**2/x``.
+
+    Return the diagnosis "none" for all other true claims.
     """
     assert claim.relation is not None
     sides = [claim.with_relation(("==", side, side)) for side in claim.relation[1:]]

@@ -31,12 +31,12 @@ __all__ = ["verdict_on_rates", "without_marks"]
 INERTIAL = {"", "I", "N", "s", "S", "i", "O", "E", "in", "fixed", "space", "inertial", "lab", "abs"}
 """Names of a frame that does not rotate, as written at a derivative: s in ``(dA/dt)_s``; "" if none is written."""
 
-TURNING = {"B", "b", "body", "rot", "rotating", "r"}
+ROTATING = {"B", "b", "body", "rot", "rotating", "r"}
 """Names of a rotating frame, as written at a derivative: B in ``(dA/dt)_B``."""
 
 MARKED = "moving"
-"""Name that symrot gives to the frame of ``d'A/dt``, and of A with a ring above: these derivatives are those in a
-rotating frame, but do not name it."""
+"""Name that symrot gives to the frame of ``d'A/dt``, and of A with a ring above. These derivatives are derivatives in a
+rotating frame, but do not name the frame."""
 
 TEXT = r"\{?\\(?:mathrm|text|textrm|mathcal|textit|rm)\s*\{?\s*(?P<{0}t>\w+'?)\s*\}*"
 LABEL = r"(?:_\s*(?:\{\s*(?P<{0}b>\w+'?)\s*\}|" + TEXT + r"|(?P<{0}w>\w)(?!\w)))"
@@ -63,7 +63,8 @@ LATEX = tuple(re.compile(pattern) for pattern in (
     r"\\d?frac\s*\{\s*" + D + r"\}\s*" + DT + r"\s*" + VECTOR,
     r"\\dot\s*\{\s*" + VECTOR + r"\s*\}",
 ))  # fmt: skip
-"""Patterns of the time derivative of a vector in LaTeX: first those that show the frame, then those that do not."""
+"""Patterns of the time derivative of a vector in LaTeX: first the patterns with a mark for the frame, then those
+without."""
 
 PLAIN = tuple(re.compile(pattern) for pattern in (
     r"\(\s*d(?P<v>\w)\s*/\s*dt\s*\)\s*_\s*\{?(?P<lb>\w+'?)\}?",
@@ -72,8 +73,8 @@ PLAIN = tuple(re.compile(pattern) for pattern in (
     r"(?<![\w(])d(?P<v>\w)\s*/\s*dt(?!\w)",
     "(?P<v>\\w)\N{COMBINING DOT ABOVE}",
 ))  # fmt: skip
-"""Patterns of the time derivative of a vector in plain text: first those that show the frame, as ``(dA/dt)_B`` does,
-then those that do not, such as ``dA/dt``."""
+"""Patterns of the time derivative of a vector in plain text: first the patterns with a mark for the frame, such as
+``(dA/dt)_B``, then those without, such as ``dA/dt``."""
 
 OMEGA = r"(?P<omega>\\(?:boldsymbol|mathbf|vec|bm)\s*(?:\{\s*\\\w+\s*\}|\\\w+)|\\[oO]mega|[ωΩ])\s*"
 MARK = r"\{?\s*(?:\\(?:mathcal|mathrm|text)\s*\{?)?\s*(?P<{0}>\w+'?)\s*\}*"
@@ -155,10 +156,10 @@ def verdict_on_rates(source: str) -> Verdict | None:
 
 
 def _with_operand(source: str) -> str:
-    """Return an equation with the sign × for a letter x between ω, or w, and a letter, as in ``ω x A``.
+    """Return an equation in which the sign × replaces a letter x that stands for it, as in ``ω x A``.
 
-    An equation between operators in LaTeX, ``(d/dt)_I = (d/dt)_B + ω ×``, gets a vector A after each ``(d/dt)`` and
-    after the × at its end.
+    Such an x has blanks around it, ω, Ω or w before it, and a single letter after it. An equation between operators in
+    LaTeX, ``(d/dt)_I = (d/dt)_B + ω ×``, gets a vector A after each ``(d/dt)`` and after the × at its end.
     """
     source = re.sub(r"(?<=[wωΩ]) x (?=\w\b)", " × ", source)
     if not re.search(r"\\times\s*$", source):
@@ -185,10 +186,10 @@ def _without_direction(source: str, still: str, moving: str) -> tuple[str, list[
 def without_marks(source: str) -> tuple[str, str]:
     """Return (text, note): a text with ``dA/dt`` in place of ``(dA/dt)_s``, and a note for the user on the frame s.
 
-    The marks such as s are left out if all derivatives with a usual name of a frame (one in INERTIAL or TURNING) have
+    The marks such as s are left out if all derivatives with a usual name of a frame (one in INERTIAL or ROTATING) have
     the same mark. Otherwise return the text unchanged and the note "".
     """
-    marked = [rate for rate in _rates_in(source) if rate.frame in {*INERTIAL, *TURNING} - {""}]
+    marked = [rate for rate in _rates_in(source) if rate.frame in {*INERTIAL, *ROTATING} - {""}]
     if not marked or len({rate.frame for rate in marked}) != 1:
         return source, ""
     whole = source
@@ -245,10 +246,12 @@ def _plain(vector: str) -> str:
 def _values(
     names: Mapping[str, str], still: str, moving: str, vector: str, angular: str, sign: int
 ) -> dict[Symbol, Any]:
-    """Return {symbol: formula} for components along the axes of the moving frame, such as ``v_x`` of a vector v.
+    """Return {symbol: formula} for the components of four vectors along the axes of the moving frame, such as ``v_x``.
 
-    The components are those of the vector, of its rates as seen from the still and from the moving frame (``names``:
-    frame -> name of the rate), and of ``sign`` times the angular velocity.
+    The four vectors are ``vector``, its rate seen from the frame ``still``, its rate seen from the frame ``moving``,
+    and ``angular``: ``sign``, 1 or -1, times the angular velocity of the moving frame. The moving frame rotates
+    arbitrarily, and ``vector`` has arbitrary components. ``names`` maps each frame to the name of the rate seen from
+    it.
     """
     angles = [Function(f"angle_{number}", real=True)(time) for number in range(3)]
     turned = (

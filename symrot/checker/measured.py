@@ -20,7 +20,7 @@ from symrot.errors import InputError
 
 __all__ = ["in_degrees", "with_units"]
 
-CIRCULAR = ("sin", "cos", "tan", "cot", "sec", "csc")
+TRIGONOMETRIC = ("sin", "cos", "tan", "cot", "sec", "csc")
 DECIMAL, ROUNDED_WHOLE = r"\d+\.\d+(?:[eE][+-]?\d+)?", r"[1-9]\d*[1-9]"
 """Patterns of a decimal number, and of a whole number of two or more digits that may have been rounded to ones, such as
 37. A number that ends with 0 does not match: 40 may have been rounded to tens or to ones."""
@@ -32,10 +32,10 @@ TURN = 7
 """A number of at least this size, such as 30 in ``sin(30)``, is probably an angle in degrees: 2 pi is 6.28."""
 
 TYPED_ANGLE = re.compile(
-    rf"\\?(?<![A-Za-z])(?:{'|'.join(CIRCULAR)})(?:\^(?:\d+|\{{\d+\}})|[²³])?\s*(?:\\left\s*)?[({{]?\s*"
+    rf"\\?(?<![A-Za-z])(?:{'|'.join(TRIGONOMETRIC)})(?:\^(?:\d+|\{{\d+\}})|[²³])?\s*(?:\\left\s*)?[({{]?\s*"
     r"(?P<number>\d+(?:\.\d+)?(?:[eE][+-]?\d+)?)(?![\w.°^])"
 )
-"""Pattern of a circular function in a text and the number at the beginning of its argument, as in ``sin(30)``."""
+"""Pattern of a trigonometric function in a text and the number at the start of its argument, as in ``sin(30)``."""
 
 
 def with_units(claim: Claim, measured: Measured, decide: Callable[[Claim], Verdict]) -> Verdict:
@@ -213,9 +213,10 @@ def in_degrees(claim: Claim, verdict: Verdict, decide: Callable[[Claim], Verdict
 
 
 def _with_degree_signs(source: str, count: int) -> tuple[Repair, ...]:
-    """Return (repair,): the text ``source`` with a degree sign after each large number in a circular function.
+    """Return (repair,): the text ``source`` with a degree sign after each angle that is probably in degrees.
 
-    Return () unless there are ``count`` such numbers, as many as in the claim that was read from the text.
+    Such an angle is a number of at least TURN at the start of the argument of a trigonometric function. ``count`` is
+    the number of such angles in the claim that was read from the text. Return () if as many are not found in the text.
     """
     degree = "^\\circ" if "\\" in source else "°"
     ends = [match.end() for match in TYPED_ANGLE.finditer(source) if float(match["number"]) >= TURN]
@@ -226,14 +227,16 @@ def _with_degree_signs(source: str, count: int) -> tuple[Repair, ...]:
 
 
 def _is_large_angle(node: Node) -> bool:
-    """Return whether a tree is a circular function of a number above a full turn, such as ``sin(30)``."""
-    return (
-        node.kind == "call" and node.value in CIRCULAR and node.args[0].kind == "number" and node.args[0].value >= TURN
-    )
+    """Return whether a tree is a trigonometric function of a number of at least TURN, such as ``sin(30)``."""
+    is_function = node.kind == "call" and node.value in TRIGONOMETRIC
+    return is_function and node.args[0].kind == "number" and node.args[0].value >= TURN
 
 
 def _degrees(tree: Node) -> Node:
-    """Return a tree with sin(30*pi/180) for sin(30): numbers from 7 on in circular functions are read in degrees."""
+    """Return a tree with ``sin(30*pi/180)`` for ``sin(30)``.
+
+    A number of at least TURN as the argument of a trigonometric function is taken as an angle in degrees.
+    """
     args = tuple(map(_degrees, tree.args))
     if _is_large_angle(tree):
         args = (product([tree.args[0], Node("name", "pi"), number(Fraction(1, 180))]),)

@@ -28,15 +28,17 @@ MANY_TO_ONE = ("sin", "cos", "tan", "abs")
 
 
 def as_equation(claim: Claim, verdict: Verdict, notation: Notation) -> Verdict:
-    """Return the verdict "definition" for a false equation of one letter with a real solution, such as ``x² = 4``, or
-    for two letters, ``a = b``; otherwise return ``verdict``, which must be "false".
+    """Return the verdict "definition" for a false equation that an author may have meant as a condition.
+
+    Such an equation has a single letter and a real solution, as ``x² = 4`` has, or each of its sides is a single
+    letter, as in ``a = b``. Return ``verdict``, which must be "false", for all other claims. ``notation`` is the
+    notation of the user's text, in which the reason for the verdict is written.
     """
     if claim.relation is None or claim.has_double_equals or not claim.implied:
         return verdict
     if claim.hypotheses or claim.define or claim.has_parts:
         return verdict
     _, left, right = claim.relation
-    # an equation of two letters, a = b
     if all(map(is_name_or_rate, (left, right))) and left != right:
         both = " and ".join(notation.formula(side) for side in (left, right))
         meanings = "the equation may be a condition, or both may be names for one quantity"

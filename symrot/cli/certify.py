@@ -73,7 +73,7 @@ def _certify(options: Namespace) -> int:
     )  # fmt: skip
     progress("")
     say_json(certificate.data) if options.json else say([str(certificate), *map(str, certificate.files)])
-    return FAILED if certificate.refuted else OK
+    return FAILED if certificate.bits_unproven else OK
 
 
 def _audit(options: Namespace) -> int:

@@ -52,7 +52,8 @@ def rate_along(expression: Expr, equations: Equations) -> Expr:
 def _candidates(equations: Equations, structure: Structure) -> Iterable[tuple[str, str, Expr, Expr]]:
     """Yield candidates for conserved quantities, such as energy and angular momentum, as (name, unit, value, tested).
 
-    The formula ``tested`` is constant exactly if the value is, and shorter to decide about: the square of a norm.
+    The formula ``tested`` is constant exactly if the value is constant, and a proof of this is shorter: for a norm it
+    is the square of the norm.
     """
     momentum, energy = equations.momentum_b, equations.kinetic_energy + equations.potential
     yield "energy", "J", energy, energy
@@ -77,7 +78,8 @@ def _of_torque(torque: TorqueStructure, momentum_s: Matrix, energy: Expr) -> Ite
     """Yield the quantities that a torque may conserve, as (name, unit, value, tested).
 
     Gravity gives the vertical angular momentum, and the gravity gradient the Jacobi integral; other torques give
-    nothing. ``tested`` is the formula to decide about, as in :func:`_candidates`: here the value itself.
+    nothing. ``tested`` is a formula that is constant exactly if the value is, see :func:`_candidates`; here it is the
+    value itself.
     """
     if not isinstance(torque, FieldTorque):
         return

@@ -69,7 +69,9 @@ class TorqueSwitch(NamedTuple):
 
 
 class FieldTorque(NamedTuple):
-    """The structure of a torque whose fields are numbers; this is every kind except ``expression``.
+    """The structure of a torque whose fields are numbers and vectors; this is every kind except ``expression``.
+
+    A field is an entry of the torque in the scene file, such as ``weight`` or ``direction``.
 
     Attributes
     ----------
@@ -78,7 +80,8 @@ class FieldTorque(NamedTuple):
     prefix : str
         Text before the names of its constants, so that they differ from the names in other torques.
     fields : pairs of name and pattern
-        The fields of the torque, in the order of the table of torques.
+        The fields of the torque, in the order of the table of torques. The pattern says whether a number is 0, 1, -1
+        or free (:class:`Pattern`); for a vector it is a tuple with one pattern for each component.
     """
 
     kind: str
@@ -201,14 +204,18 @@ class Structure:
 
     @property
     def reductions(self) -> tuple[object, ...]:
-        """The facts that eliminate states: ``planar``, ``initial_quaternion`` and ``constant``, see :class:`Structure`.
+        """The attributes ``planar``, ``initial_quaternion`` and ``constant``, which say which states are eliminated.
 
-        Two structures with the same reductions, ``attitude`` and ``sequence`` have the same states.
+        Two structures have the same states if their reductions are equal, and also their ``attitude`` and their
+        ``sequence``.
         """
         return self.planar, self.initial_quaternion, self.constant
 
     def unreduced(self) -> "Structure":
-        """Return the structure with all of omega_b, and q if the attitude is computed, as states, for any start."""
+        """Return the structure in which no state is eliminated and nothing is assumed about the initial state.
+
+        All components of omega_b are states, and all components of q if the attitude is computed.
+        """
         return replace(self, planar=None, initial_quaternion=None, constant=MOVING)
 
     def to_json(self) -> dict[str, object]:

@@ -17,6 +17,11 @@ __all__ = ["ORIENTATIONS", "Angles", "of_quaternion", "of_roll_pitch_yaw", "quat
 
 Numbers = Sequence[Fraction]
 
+NEGLIGIBLE = 1e-60
+"""Magnitude below which an entry of a rotation matrix counts as zero in angles and quaternions.
+
+Such an entry is the rounding error of a zero; a robot file that contains it, as 1e-113, could not be read again."""
+
 
 class Angles(NamedTuple):
     """The settings of a robot file for angles: degrees or rad, and the sequence of Euler angles.
@@ -115,9 +120,14 @@ ORIENTATIONS: dict[str, tuple[int, Callable[[Numbers, Angles], Tensor]]] = {
 """Attribute of MJCF -> (how many numbers it has, function from these numbers and the file's settings to a matrix)."""
 
 
+def _doubles(rotation: Tensor) -> list[list[float]]:
+    """Return the entries of a rotation matrix as doubles, with 0 for entries of a magnitude below NEGLIGIBLE."""
+    return [[float(entry) if abs(entry) > NEGLIGIBLE else 0.0 for entry in row] for row in rotation]
+
+
 def roll_pitch_yaw_of(rotation: Tensor) -> tuple[float, float, float]:
     """Return roll, pitch and yaw, rad, of a rotation matrix; at gimbal lock (pitch 90 or -90 degrees) roll is 0."""
-    m = [[float(entry) for entry in row] for row in rotation]
+    m = _doubles(rotation)
     across = hypot(m[0][0], m[1][0])
     if across < 1e-12:  # gimbal lock: only the sum or difference of roll and yaw matters
         return 0.0, atan2(-m[2][0], across), atan2(-m[0][1], m[1][1])
@@ -126,7 +136,7 @@ def roll_pitch_yaw_of(rotation: Tensor) -> tuple[float, float, float]:
 
 def quaternion_of(rotation: Tensor) -> tuple[float, float, float, float]:
     """Return the unit quaternion of a rotation matrix, scalar first, with a scalar that is not negative."""
-    m = [[float(entry) for entry in row] for row in rotation]
+    m = _doubles(rotation)
     trace = m[0][0] + m[1][1] + m[2][2]
     squares = [1 + trace, *(1 + 2 * m[k][k] - trace for k in range(3))]  # 4 q_k^2
     differences = [m[2][1] - m[1][2], m[0][2] - m[2][0], m[1][0] - m[0][1]]  # 4 q_0 q_k

@@ -94,7 +94,7 @@ class Question:
     symbols : dict of str to str
         The symbols of all given quantities, which a formula may use -> their units (``"1"`` for a pure number).
     positive : tuple of str
-        Those of these symbols that are positive.
+        Those of these symbols whose numbers are positive in every exercise of the template.
     slips : dict of str to str
         Mistake and symbol, such as ``"diameter R"`` -> the wrong number, in ``unit``, to which this mistake leads.
 
@@ -311,7 +311,7 @@ def _length(answer: Expr) -> int:
 def _questions(problem: Problem, values: Mapping[Symbol, Expr]) -> Iterator[Question]:
     keys = iter("abcdefghijklmnopqrstuvwxyz")
     units = {sstr(q.symbol): q.unit or "1" for q in problem.quantities}
-    positive = tuple(sstr(q.symbol) for q in problem.quantities if q.symbol.is_positive)
+    positive = tuple(sstr(q.symbol) for q in problem.quantities if all(Rational(number) > 0 for number in q.numbers))
     for asked in problem.asked:
         if asked.as_formula:
             names = ", ".join(f"${formula(symbol)}$" for symbol in _used(problem, asked))

@@ -37,8 +37,8 @@ def _tube_wall(radius: float, slope: float) -> Wall:
         disk = hulls.enclosing_disk(piece)
         if abs(disk.normal[0]) + abs(disk.normal[1]) < PARALLEL or not disk.radius:
             x, y, z = disk.center
-            return math.hypot(x, y) + disk.radius + slope * z + disk.ball * steep
-        return max(math.hypot(x, y) + slope * z for x, y, z in hulls.polygon_around(disk)) + disk.ball * steep
+            return math.hypot(x, y) + disk.radius + slope * z + disk.margin * steep
+        return max(math.hypot(x, y) + slope * z for x, y, z in hulls.polygon_around(disk)) + disk.margin * steep
 
     return lambda pieces: (max(map(reach, pieces)) - radius) / steep
 
@@ -63,7 +63,7 @@ def _ellipsoid_wall(a: float, b: float, c: float) -> Wall:
             spread = max(lengths) if crossed < PARALLEL else math.hypot(*lengths)
             return math.hypot(*scaled(piece.center)) + spread
         disk = hulls.enclosing_disk(piece)
-        return max(math.hypot(*scaled(point)) for point in hulls.polygon_around(disk)) + disk.ball / least
+        return max(math.hypot(*scaled(point)) for point in hulls.polygon_around(disk)) + disk.margin / least
 
     return lambda pieces: (max(map(reach, pieces)) - 1) * least
 

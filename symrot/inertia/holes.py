@@ -97,7 +97,7 @@ def dense_part(
 
 
 def doubtful_holes(parts: Sequence[DensePart | None], names: Sequence[str]) -> tuple[str, ...]:
-    """Return a sentence for each hole of a body whose density could not be proven to be negative nowhere in the hole.
+    """Return a sentence for each hole in which the density of the body was not proven to be at least zero.
 
     Parameters
     ----------
@@ -138,7 +138,7 @@ def doubtful_holes(parts: Sequence[DensePart | None], names: Sequence[str]) -> t
 
 
 def _is_within(hole: DensePart, near: Sequence[DensePart], radius: float) -> bool:
-    """Return whether it is proven that the body has no negative density in a hole (a part that is subtracted).
+    """Return whether the density of the body is proven to be at least zero in a hole (a part that is subtracted).
 
     ``near`` are the other parts that may touch the hole; ``radius`` is that of a ball around the hole, m. The hole is
     tested as a whole, then in pieces (:func:`_pieces`).
@@ -213,14 +213,14 @@ _CUT = {
     "hollow_cylinder": (("length", 2),),
     "triangular_prism": (("length", 2),),
 }
-"""Shape of a hole -> pairs (name of a dimension, its axis 0, 1 or 2) along which the hole may be cut into pieces.
+"""Shape of a hole -> pairs (name of a dimension, its axis 0, 1 or 2).
 
-Planes normal to these axes cut a box into boxes, and a cylinder into cylinders.
+Planes normal to these axes cut the hole into pieces of the same shape: a box into boxes, a cylinder into cylinders.
 """
 
 
 def _pieces(hole: hulls.Solid3, hosts: Sequence[hulls.Solid3]) -> list[hulls.Solid3]:
-    """Return the pieces into which a hole is cut, along its own axes, where one of the parts ``hosts`` begins or ends.
+    """Cut a hole by planes normal to its own axes where one of the parts ``hosts`` begins or ends; return the pieces.
 
     A bore through two plates that touch gives two pieces. The list is empty for shapes other than boxes, cylinders and
     prisms, and if there would be more than MOST_PIECES pieces.

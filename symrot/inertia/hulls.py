@@ -1,7 +1,7 @@
 """Convex hulls of shapes, described by simple pieces, and their extents along directions. Standard library only.
 
-The hull of a shape is the convex hull of its pieces. A piece is a disk inflated by a ball (such as a point, a circle, a
-ball or a torus), a dome or an ellipsoid. Lengths are doubles, in m.
+The hull of a shape is the convex hull of its pieces. A piece is a :class:`Disk` (all points within a distance of a flat
+disk: a point, a circle, a ball or a torus), a :class:`Dome` (half a ball) or an ellipsoid. Lengths are doubles, in m.
 """
 
 import math
@@ -82,15 +82,16 @@ class Solid3:
 
 
 class Disk(NamedTuple):
-    """A disk inflated by a ball, that is, all points whose distance from the disk is at most the radius of the ball.
+    """A flat disk with a margin: all points whose distance from the flat disk is at most ``margin``.
 
-    The fields are centre, unit normal and radius of the disk, and the radius of the ball. Both radii may be zero.
+    The other fields are the centre, the unit normal and the radius of the flat disk. Radius and margin may be zero: a
+    disk of radius 0 is a ball, whose radius is the margin.
     """
 
     center: Vec
     normal: Vec
     radius: float
-    ball: float
+    margin: float
 
 
 class Dome(NamedTuple):
@@ -117,8 +118,8 @@ def point_disks(*points: Vec) -> list[Piece]:
     return [Disk(point, Z, 0.0, 0.0) for point in points]
 
 
-def _rim(z: float, radius: float, ball: float = 0.0) -> Piece:
-    return Disk((0.0, 0.0, z), Z, radius, ball)
+def _rim(z: float, radius: float, margin: float = 0.0) -> Piece:
+    return Disk((0.0, 0.0, z), Z, radius, margin)
 
 
 def _signs(a: float, b: float, c: float) -> list[Piece]:
@@ -157,7 +158,7 @@ _HULLS: dict[str, Callable[[Dimensions], list[Piece]]] = {
 def _moved(piece: Piece, pose: Pose) -> Piece:
     center = pose.to_body(piece.center)
     if isinstance(piece, Disk):
-        return Disk(center, pose.rotate(piece.normal), piece.radius, piece.ball)
+        return Disk(center, pose.rotate(piece.normal), piece.radius, piece.margin)
     if isinstance(piece, Dome):
         return Dome(center, pose.rotate(piece.axis), piece.radius)
     first, second, third = map(pose.rotate, piece.axes)
@@ -172,12 +173,12 @@ def extent(piece: Piece, direction: Vec) -> float:
     axis = piece.normal if isinstance(piece, Disk) else piece.axis
     along: float = dot(axis, direction)
     if isinstance(piece, Disk):
-        return base + piece.radius * math.sqrt(max(0.0, 1 - along * along)) + piece.ball
+        return base + piece.radius * math.sqrt(max(0.0, 1 - along * along)) + piece.margin
     return base + piece.radius * (1.0 if along >= 0 else math.sqrt(max(0.0, 1 - along * along)))
 
 
 def enclosing_disk(piece: Piece) -> Disk:
-    """Return an inflated disk (:class:`Disk`) that contains a piece."""
+    """Return a :class:`Disk` that contains a piece of a hull: the piece itself, or a ball around it."""
     if isinstance(piece, Disk):
         return piece
     radius = piece.radius if isinstance(piece, Dome) else max(math.hypot(*axis) for axis in piece.axes)
@@ -198,7 +199,7 @@ def _farthest_along(piece: Piece, direction: Vec) -> Vec:
     across = plus(direction, axis, -along)
     rim = plus(piece.center, unit_vector(across), piece.radius if math.hypot(*across) > PARALLEL else 0.0)
     if isinstance(piece, Disk):
-        return plus(rim, direction, piece.ball)
+        return plus(rim, direction, piece.margin)
     return plus(piece.center, direction, piece.radius) if along >= 0 else rim
 
 
@@ -229,11 +230,11 @@ AXES: tuple[Vec, Vec, Vec] = ((1.0, 0.0, 0.0), (0.0, 1.0, 0.0), (0.0, 0.0, 1.0))
 
 
 def largest_distance(disk: Disk, point: Vec) -> float:
-    """Return the largest distance from ``point`` to points of a disk inflated by a ball (:class:`Disk`)."""
+    """Return the largest distance from ``point`` to points of a :class:`Disk`, a flat disk with a margin."""
     offset = plus(disk.center, point, -1.0)
     along = dot(offset, disk.normal)
     across = math.sqrt(max(0.0, dot(offset, offset) - along * along))
-    return math.hypot(along, across + disk.radius) + disk.ball
+    return math.hypot(along, across + disk.radius) + disk.margin
 
 
 def _across(axis: Vec) -> Vec:
@@ -242,9 +243,9 @@ def _across(axis: Vec) -> Vec:
 
 
 def polygon_around(disk: Disk) -> list[Vec]:
-    """Return the corners of a polygon that contains the flat disk, without the ball that inflates it (:class:`Disk`).
+    """Return the corners of a polygon around the flat disk of a :class:`Disk`, in the plane of this flat disk.
 
-    For a disk of radius 0, the only corner is its centre.
+    The margin of the Disk is not included. For a flat disk of radius 0, the only corner is its centre.
     """
     if not disk.radius:
         return [disk.center]
@@ -259,7 +260,7 @@ def corners(solid: Solid3) -> list[Vec]:
     """Return points whose convex hull contains a shape; an empty list for a torus."""
     points: list[Vec] = []
     for piece in solid.hull:
-        if isinstance(piece, Disk) and not piece.ball:
+        if isinstance(piece, Disk) and not piece.margin:
             points += polygon_around(piece)
         elif isinstance(piece, Disk) and piece.radius:
             return []
@@ -269,7 +270,7 @@ def corners(solid: Solid3) -> list[Vec]:
             half = [point for point in _ball() if point[2] >= 0]
             points += [_combined(piece.center, axes, point, piece.radius) for point in half]
         elif isinstance(piece, Disk):
-            points += [plus(piece.center, point, piece.ball) for point in _ball()]
+            points += [plus(piece.center, point, piece.margin) for point in _ball()]
         else:
             points += [_combined(piece.center, piece.axes, point, 1.0) for point in _ball()]
     return points

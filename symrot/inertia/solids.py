@@ -413,7 +413,10 @@ _MASS = Dimension("mass", "kg", "m")
 
 
 def _weighted(shape: Shape, values: Mapping[str, Expr], profile: Poly, measure: Expr) -> Solid:
-    """Return the solid of a shape whose density, ``profile``, is a polynomial in x, y, z."""
+    """Return the solid of a shape whose density, ``profile``, is a polynomial in x, y, z.
+
+    ``values`` has the dimensions of the shape by name; ``measure`` is its volume, area or length, m^3, m^2 or m.
+    """
     known = {name: Fraction(value.p, value.q) for name, value in values.items() if value.is_Rational}
     region = domain(shape, known)
     density, coefficients = constant(0), {}

@@ -134,27 +134,36 @@ def _coefficients(node: Node) -> tuple[Fraction, Fraction] | None:
 
 
 def clock(
-    moving: Callable[[], tuple[Plan, SceneKernel]],
+    shifted: Callable[[], tuple[Plan, SceneKernel]],
     constants: Mapping[str, Fraction],
     start: float = 0.0,
     make: Callable[[Plan, SceneKernel], Any] = motion_library,
 ) -> Callable[[float], tuple[Any, list[float]]]:
-    """Return a function that takes an epoch, s after ``start``, and returns rates and the values of their parameters.
+    """Return a function from an epoch, s after ``start``, to the rates and the values of their parameters.
 
-    The rates take the time since the epoch. At a late time, a stepper begins to count its time from a new epoch and
-    calls the function for the rates in this time. The rates, a compiled library or a Python function, are made once, by
-    ``make`` from the plan and kernel that ``moving`` returns. For another epoch only the values of the parameters
-    differ.
+    In the rates, t is the time since the epoch. At a late time, a stepper begins to count its time from a new epoch and
+    calls this function. The rates are the same for every epoch and are made on first use; only the values of the
+    parameters differ.
+
+    Parameters
+    ----------
+    shifted : function
+        Returns a plan (equations of a scene) and its kernel in which the epoch is a constant, as :func:`time_shifted`
+        does.
+    constants : mapping
+        The other constants of the scene, by name.
+    start : float
+        Time of the scene, s, at which the clock of the motion shows 0.
+    make : function
+        Takes this plan and kernel and returns the rates: a compiled library for DOP853, a Python function for SciPy.
     """
 
-    # moving(), a plan and kernel as time_shifted returns them, is called on first use; make() turns them into the
-    # library for DOP853 or the Python function for SciPy
     @cache
-    def following() -> tuple[Any, ShiftedParameters]:
-        plan, kernel = moving()
+    def rates() -> tuple[Any, ShiftedParameters]:
+        plan, kernel = shifted()
         return make(plan, kernel), ShiftedParameters(kernel.rate_parameters, constants, start)
 
-    return lambda since: (following()[0], following()[1].parameters(since))
+    return lambda since: (rates()[0], rates()[1].parameters(since))
 
 
 def _folded(node: Node, known: Mapping[str, Fraction]) -> Node:

@@ -202,7 +202,7 @@ class Trajectory(MotionSamples):
 
     @property
     def has_attitude(self) -> bool:
-        """Whether the attitude was computed; a plan omits it if neither a torque nor the output needs it."""
+        """Whether the attitude was computed; it is not if neither a torque nor the output of the scene needs it."""
         return self.plan.structure.attitude
 
     def _need_attitude(self) -> None:

@@ -181,7 +181,10 @@ class MotionSamples(Samples):
 
     @cached_property
     def axis(self) -> Floats:
-        """Direction of the symmetry axis, or without one of the third body axis, space components, shape (..., 3)."""
+        """Direction of the symmetry axis of the body, space components, shape (..., 3).
+
+        It is the direction of the third body axis if the body has no symmetry axis.
+        """
         if self.axis_number is not None:
             return conversions.quaternion_to_axis(self.quaternion, self.axis_number)
         principal = self.scene.body.principal

@@ -32,8 +32,8 @@ _CONTENT_FAULTS = (ValueError, LookupError, TypeError, AttributeError)  # as of 
 class SavedTrajectory(Samples):
     """The samples of a trajectory from a file; :func:`symrot.load` returns it. Conventions: :mod:`symrot.conventions`.
 
-    The quantities in the file are attributes, such as ``energy``. Only the Euler angles in the file are read by
-    ``quantity("euler")``, since the method :meth:`euler` computes the angles of any sequence.
+    The quantities in the file are attributes, such as ``energy``. Euler angles are the exception: ``quantity("euler")``
+    returns the angles in the file, because :meth:`euler` is a method, which computes the angles of any sequence.
 
     Attributes
     ----------

@@ -229,9 +229,9 @@ def restored(record: Mapping[str, Any], items: Mapping[str, Labelled]) -> Sensit
 
 
 def time_slopes(rows: Sequence[Sequence[float | None]], variables: int | None) -> Floats:
-    """Return the derivatives of k times by m variables as an array, shape (k, m), from ``rows`` in a file.
+    """Return the derivatives of k points in time by m variables as an array, shape (k, m), from ``rows`` in a file.
 
-    None in the file is NaN in the result. ``variables`` is m; without it, k must be at least 1.
+    None in the file is NaN in the result. ``variables`` is m; if it is None, k must be at least 1.
     """
     table = np.array([[np.nan if value is None else value for value in row] for row in rows], dtype=np.float64)
     return table if variables is None else table.reshape(len(rows), variables)

@@ -213,7 +213,8 @@ def _body_of_moments(inertia: Matrix, values: Mapping[str, Any], where: str, sou
     about, center = values["about"], values["center_of_mass"]
     if about == "center_of_mass":
         if center is not None and any(center):
-            fail(f"{where}.center_of_mass", 'about = "fixed_point", from which center_of_mass is measured', center)
+            expected = 'this key only beside about = "fixed_point", since it is measured from the fixed point'
+            fail(f"{where}.center_of_mass", expected, center)
         center = _ZERO
     description = f"{values['name'] or 'body'} with {source}"
     return Body(values["mass"], inertia, center, about, description, principal_axes(inertia, where))

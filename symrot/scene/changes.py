@@ -1,7 +1,8 @@
 """Changes of a scene, such as ``weight=2``: finds the value that a key names and replaces it in the scene's content.
 
 A key is a path in the scene file, such as ``body.mass`` or ``torque[0].weight``, or a short name, such as ``omega_2``,
-``samples``, ``I_xx`` or ``weight``. Constants have the same names in plans and ensembles. Standard library only.
+``samples``, ``I_xx`` or ``weight``. Constants have the names that they have in the equations and in
+:func:`symrot.propagate_ensemble`. Standard library only.
 """
 
 import re
@@ -139,9 +140,11 @@ def present_value(scene: SceneContent, key: str) -> Any:
 
 
 def number_path(scene: SceneContent, key: str) -> Path:
-    """Return the path of the number or text that a key names: ``"linear"`` gives ``("torque", 0, "linear")``.
+    """Return the path in the scene's content of the number or text that a key names.
 
-    The path is empty if the key names nothing, a table, a list, true or false, or one component of a vector.
+    A key is a path or a short name, as for :meth:`symrot.Scene.with_`. If the first torque has a constant ``linear``,
+    the key ``"linear"`` gives ``("torque", 0, "linear")``. The path is empty if the key names nothing, a table, a list,
+    true or false, or one component of a vector.
     """
     try:
         place = _place(scene, key)
@@ -159,8 +162,9 @@ def number_path(scene: SceneContent, key: str) -> Path:
 def set_last(key: str) -> bool:
     """Return whether a change by ``key`` must come after the other changes, because it uses numbers that they may set.
 
-    ``I_xx`` and ``center_of_mass`` replace the shapes of the body by moments of inertia. A change of ``omega_2`` leaves
-    the other two body components of omega unchanged; if the scene gives omega in space, these follow from the attitude.
+    ``I_xx`` and ``center_of_mass`` replace the shapes of the body by moments of inertia, which follow from dimensions
+    and masses. ``omega_2`` replaces one body component of omega and keeps the other two. If the scene gives omega in
+    space components, these two follow from the attitude, which another change may set.
     """
     return key in (*TENSOR, *RATES, "principal") or str(key).rpartition(".")[2].startswith("center_of_mass")
 

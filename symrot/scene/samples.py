@@ -151,8 +151,8 @@ def read_samples(
     twice = {after for before, after in pairwise(times) if after == before}
     for switch in values["switching_times"]:
         if switch not in twice:
-            fail(f"{where}.switching_times", "times of two samples each, one before and one after the jump, got "
-                     f"{switch!r} s")  # fmt: skip
+            fail(f"{where}.switching_times", "times that occur twice among the times of the samples, with the torque "
+                     f"before and after the jump, got {switch!r} s, which does not")  # fmt: skip
     first, last = map(float, span)
     if times[0] > first or times[-1] < last:
         fail(place, f"samples that cover the span of the scene, {first!r} to {last!r} s, got {times[0]!r} to "
@@ -184,7 +184,11 @@ def _check(times: tuple[float, ...], switching: tuple[float, ...], place: str, l
 
 
 def _check_slopes(times: tuple[float, ...], moments: tuple[tuple[float, ...], ...], place: str) -> None:
-    """Raise InputError if a coefficient of the interpolating spline would be too large for a double."""
+    """Raise InputError if a coefficient of the spline through the samples could be too large for a double.
+
+    ``times`` are the times of the samples, s, and ``moments`` the components of the torque at these times, N m.
+    ``place`` names the samples in the message.
+    """
     for (before, here), (after, there) in pairwise(zip(times, moments, strict=True)):
         gap, change = after - before, max(abs(y - x) for x, y in zip(here, there, strict=True))
         if gap and not (gap >= 1 / _STEEPEST and change <= gap * _STEEPEST):

@@ -153,8 +153,9 @@ class Scene:
     def to_dict(self) -> dict[str, Any]:
         """Return the content of the scene file or dict from which the scene was read, with all changes since then.
 
-        The result is a copy without name and path; ``Scene.from_dict`` reads it as a scene that is equal otherwise, but
-        for a title that follows from the name. It looks for files of meshes and samples in the current folder.
+        The result is a copy. It has neither the name nor the path of the scene: ``Scene.from_dict`` reads from it a
+        scene that equals this one except for name and path, and for the title if that was derived from the name.
+        ``Scene.from_dict`` looks for files of meshes and samples in the current folder.
 
         Raises
         ------
@@ -287,10 +288,10 @@ class _Origin(NamedTuple):
 
 
 def _parts(scene: Scene) -> tuple[Any, ...]:
-    """Return the body, the torques and the table of samples of a scene, for :meth:`Scene.to_dict`.
+    """Return the body, the torques and the table of samples of a scene, which :meth:`Scene.to_dict` cannot write.
 
-    The method cannot convert these objects to content; it takes the content of the file from which they were read. If
-    one of these objects was replaced later, that content no longer describes the scene.
+    The method returns the content of the file from which these objects were read. It compares them with the objects
+    that were read then: if one was replaced later, the content of the file no longer describes the scene.
     """
     return scene.body, scene.torques, scene.table
 

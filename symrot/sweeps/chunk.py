@@ -116,8 +116,8 @@ def _inputs(job: Job, draws: Draws, messages: dict[int, str]) -> tuple[_Inputs, 
 def _read_scenes(job: Job, draws: Draws, paths: dict[Path, int], inputs: _Inputs, messages: dict[int, str]) -> Rows:
     """Read the scene with the varied values of each row, and return the rows that give a valid scene.
 
-    The numbers that follow from the values are written into ``inputs``, the reason for each other row into
-    ``messages``.
+    For such a row, the constants and the initial state that follow from the values are written into ``inputs``; for
+    every other row, the reason is written into ``messages``.
     """
     assert job.content is not None
     # paths: the place of each varied number in the scene file, with its column in the draws
@@ -156,9 +156,11 @@ class _Varied(NamedTuple):
 
 @lru_cache(maxsize=2)
 def _reader(job: Job, paths: tuple[Path, ...], constants: tuple[str, ...]) -> Any:
-    """Return a function from the values at ``paths`` of the scene file to the numbers that follow from them.
+    """Return a function that reads the scene with new values at ``paths`` of the scene file.
 
-    It returns the reason as a text if the scene with these values is not valid.
+    The function takes these values. It returns what follows from them (:class:`_Varied`): the values of the
+    ``constants`` of the equations, and the initial state. If the scene with these values is not valid, the function
+    returns the reason as a text.
     """
     names = {axis.target.path: axis.target.name for axis in job.design.axes}
 
@@ -205,8 +207,8 @@ def _propagate(
 ) -> None:  # fmt: skip
     """Propagate ``rows``, which share their equations, and write ``outputs``, ``status`` and ``messages``.
 
-    If the propagation raises an error, the rows are halved, down to single rows; a row that fails alone is left as it
-    is, but for its message.
+    If the propagation raises an error, the rows are halved, down to single rows. For a row that fails alone, only the
+    message is written.
     """
     try:
         ensemble = propagate_ensemble(

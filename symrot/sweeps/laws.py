@@ -21,7 +21,9 @@ __all__ = ["DISTRIBUTIONS", "GRIDS", "Distribution", "Grid", "Law", "read_law"]
 Floats = NDArray[np.float64]
 MOST_GRID_VALUES = 10_000_000
 MOST_DEVIATIONS = 9
-"""Drawn values of a normal distribution are within so many deviations of the mean: the probability 2^-53 is at 8.2."""
+"""Number of deviations from the mean that no value drawn from a normal distribution exceeds.
+
+The smallest probability that is drawn is 2^-53: a normal distribution exceeds 8.2 deviations with this probability."""
 
 
 class _Family(NamedTuple):
@@ -138,7 +140,12 @@ def read_law(law: object, where: str) -> Law:
 
 
 def _refuse(where: str, law: object, unknown: str = "") -> NoReturn:
-    """Raise InputError with a list of all laws; the message may suggest a law with a similar name as ``unknown``."""
+    """Raise InputError because ``law`` is no law; the message lists all laws.
+
+    A law says how a value varies: a distribution such as ``normal(mean, deviation)``, or a grid such as
+    ``linspace(first, last, count)``. ``where`` is the name of the value. ``unknown`` is the name of the law in ``law``,
+    if it has one: the message then suggests a law with a similar name.
+    """
     laws = [f"{name}({', '.join(family.parameters)})" for name, family in DISTRIBUTIONS.items()]
     message = f"{where}: expected one of {', '.join([*laws, *GRIDS.values()])}, got {show(law)}"
     raise InputError(with_hint(message, unknown, (*DISTRIBUTIONS, *GRIDS)))

@@ -121,7 +121,8 @@ class Store(Protocol):
     def finish(self, tables: list[Table], only_statistics: str) -> None:
         """Store the statistics ``tables`` at the end of a sweep.
 
-        Remove the values of inputs and outputs if ``only_statistics``, a description of the statistics, is not empty.
+        ``only_statistics`` is a text that describes the statistics if these alone are to be kept: the values of inputs
+        and outputs are then removed. It is empty if the values are kept too.
         """
 
 
@@ -174,7 +175,7 @@ def _digest(text: str) -> str:
 
 
 def continued(header: Header, path: Path, description: Callable[[], Mapping[str, Any]]) -> Header:
-    """Return ``header`` with as many trajectories per chunk as the results at ``path``, which the sweep continues.
+    """Return ``header`` with as many trajectories per chunk as the results at ``path``, from which the sweep resumes.
 
     Parameters
     ----------
@@ -183,12 +184,13 @@ def continued(header: Header, path: Path, description: Callable[[], Mapping[str,
     path : Path
         The existing file or folder.
     description : callable
-        Reads the ``identity`` of the sweep and the ``rows`` of a chunk from the file or folder.
+        Reads the file or folder, and returns the settings of its sweep (``identity``) and its number of trajectories
+        in a chunk (``rows``).
 
     Raises
     ------
     InputError
-        If the path contains something else than results of the same sweep.
+        If the path contains anything other than results of the same sweep.
     """
     expectation = f"{path}: expected a new name or the results of this sweep"
     try:

@@ -40,7 +40,9 @@ UNAVERAGED = {
     "euler": "angles jump by 360 degrees, and the mean of 179 and -179 degrees is not 0",
     "quaternion": "q and -q are one attitude",
 }
-"""Quantity -> why its components have no mean and no percentiles over trajectories; angles have no mean over time too.
+"""Quantity -> why its components have no mean and no percentiles over trajectories.
+
+Angles have no mean over time either.
 """
 
 REDUCTIONS: dict[str, tuple[str, Callable[[Floats], Floats]]] = {
@@ -82,10 +84,11 @@ def _components(output: Output) -> dict[str, tuple[str, int]]:
 
 
 def scene_for(scene: Scene, texts: Sequence[str]) -> Scene:
-    """Return the scene with the Euler sequence in the outputs ``texts``: ZYX, in rad, for ``euler_ZYX_1@end``.
+    """Return a scene with the Euler sequence that the outputs ``texts`` name, and with angles in rad.
 
-    The scene is unchanged if the outputs have no sequence, or the sequence of the scene. Raise InputError for two
-    sequences, or for three letters that are no sequence.
+    The output ``euler_ZYX_1@end``, for example, names the sequence ZYX. The scene is returned unchanged if the outputs
+    name no sequence, or the sequence of the scene. Raise InputError for two sequences, or for three letters that are no
+    sequence.
     """
     from dataclasses import replace
 

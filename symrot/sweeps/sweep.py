@@ -221,7 +221,7 @@ def sweep(
     Raises
     ------
     InputError
-        If an argument cannot be used, or if ``path`` contains something else than results of the same sweep.
+        If an argument cannot be used, or if ``path`` contains anything other than results of the same sweep.
     PropagationError
         If processes or a cluster fail again and again; complete chunks remain in the file.
     CompilerError
@@ -384,8 +384,9 @@ def _job(
 def _require_derivatives(scene: Scene, content: Content | None, design: Design, keys: Sequence[str]) -> None:
     """Raise InputError if the motions of a sweep have no derivatives by the variables ``keys``.
 
-    They have none by a variable that sets a quantity which the sweep varies in another way: mass and radius of a body
-    both set its moments of inertia.
+    A derivative by a variable is refused if the sweep varies a number that the variable sets. The mass of a body, for
+    example, sets its moments of inertia: derivatives by the mass are refused if the sweep varies the radius, which sets
+    the moments of inertia too.
     """
     from symrot.ensemble.sensitivities import read_columns
 

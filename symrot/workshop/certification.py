@@ -73,7 +73,7 @@ class Certificate:
     objects_compared: bool = False
 
     @property
-    def refuted(self) -> bool:
+    def bits_unproven(self) -> bool:
         """Whether :func:`certify` compared object code and did not prove that it computes the bits of the C text.
 
         Only code compiled with flags under which a compiler must keep every bit of the results, such as

@@ -8,6 +8,7 @@ from random import Random
 import pytest
 
 from symrot.certificates import recheck
+from symrot.certificates.certificate import certificate_json
 from symrot.certificates.readback.readback import read_kernel
 from symrot.certificates.rounding.constants import parameter_range
 from symrot.certificates.rounding.section import check_section
@@ -15,6 +16,7 @@ from symrot.cli.main import main
 from symrot.errors import InputError
 from symrot.formula.tree import parse
 from symrot.planning.scene_kernel import bind
+from symrot.scene.scene import load_scene
 from symrot.workshop.bounds import facts, rounding_problem, section
 from symrot.workshop.emit import emit
 from symrot.workshop.kernel_files import stored_bounds
@@ -142,6 +144,28 @@ def test_bounds_of_a_scene_file_and_without_any(tmp_path, capsys, monkeypatch):
     assert main(["certify", "gyrostat", "-o", "k"]) == 0
     assert json.loads(Path("k/gyrostat_rates.cert.json").read_text(encoding="utf-8")).get("rounding") is None
     assert "Errors:" not in Path("k/gyrostat_rates.c").read_text(encoding="utf-8")
+
+
+@pytest.mark.parametrize(
+    ("part", "change"),
+    [
+        ("flags", lambda flags: flags | {"allowed": flags["allowed"] | {"-Ofast": "changes no value"}}),
+        ("flags", lambda flags: flags | {"void": {}}),
+        ("trusted", lambda trusted: {}),
+        ("coq", lambda section: {"file": "quaternion.v", "theorem": "own", "statement": "proven"}),
+    ],
+)
+def test_an_audit_without_the_scene_still_knows_flags_assumptions_and_theorems(tmp_path, capsys, part, change):
+    """They do not depend on the scene: no flag becomes harmless, and no theorem proven, because a forger says so."""
+    path = tmp_path / "own.toml"
+    path.write_text(load_scene("gyrostat").to_toml(), encoding="utf-8")
+    assert main(["emit", str(path), "-o", str(tmp_path)]) == 0
+    certificate = tmp_path / "own_rates.cert.json"
+    assert main(["audit", str(certificate)]) == 0
+    forged = json.loads(certificate.read_text(encoding="utf-8"))
+    certificate.write_text(certificate_json(forged | {part: change(forged[part])}), encoding="utf-8")
+    assert main(["audit", str(certificate)]) == 1
+    assert f"expected '{part}' as symrot prints it now" in capsys.readouterr().err
 
 
 def test_time_is_the_span_of_the_scene_and_parameters_are_points():

@@ -136,6 +136,17 @@ def test_a_link_that_is_written_reads_back(tmp_path, form, vector):
     assert new.read_text()[:start] == path.read_text()[:start]
 
 
+@pytest.mark.parametrize("angles", ["0 45 30", "30 30 0", "30 30 180", "30 45 0"])
+def test_zeros_of_rotated_axes_are_written_as_zeros(tmp_path, angles):
+    """Their rounding errors, such as 1e-120, are numbers that robot files must not have."""
+    text = SDF.format(attributes='degrees="true"', rotation=angles).replace("0.001<", "0<").replace("-0.002<", "0<")
+    path = robot(tmp_path, text)
+    arm = symrot.link(path, "arm")
+    for form in TEXTS:
+        new = symrot.write_link(robot(tmp_path, TEXTS[form]), "arm", arm, tmp_path / "new.xml")
+        assert tensor(symrot.link(new, "arm")) == pytest.approx(tensor(arm), abs=1e-17)
+
+
 @pytest.mark.parametrize(
     "start",
     [

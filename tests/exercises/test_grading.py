@@ -127,3 +127,61 @@ def test_an_inverse_cosine_is_read_as_the_page_prints_it():
     exercise = symrot.exercise("angle_of_two_rotations")[0]
     assert r"\arccos" in exercise.questions[0].latex
     assert symrot.grade(exercise, [exercise.questions[0].latex]).marks[0].outcome == "right"
+
+
+@pytest.mark.parametrize("answer", [
+    "2 phi_dot = mgh/(C omega_3)", "1/φ̇ = mgh/(C ω_3)", "-dphi = mgh/(C omega_3)", "φ̇² = mgh/(Cω_3)", "tan(dphi) = mgh/(C omega_3)",
+    "phi_dot != mgh/(C omega_3)", "dphi >= mgh/(C omega_3)", "C = mgh/(C omega_3)", r"2\dot\phi = \frac{mgh}{C\omega_3}", "mgh/C = mgh/(C omega_3)",
+])  # fmt: skip
+def test_an_equation_for_something_else_is_not_right(answer):
+    """A right formula after the name of twice the quantity says that the quantity is half of it."""
+    mark = symrot.grade(symrot.exercise("level_precession")[0], [answer]).marks[0]
+    assert mark.outcome == "unread" and mark.credit == 0 and "in front of '='" in mark.text, mark
+
+
+@pytest.mark.parametrize("template, left, key", [
+    ("level_precession", "dphi/dt", "a"), ("level_precession", r"\frac{d\phi}{dt}", "a"), ("level_precession", "phi-dot", "a"), ("level_precession", "Ω_p", "a"),
+    ("level_precession", "m h g/(omega_3 C)", "a"), ("acceleration_at_dead_centre", "d²x/dt²", "a"), ("acceleration_at_dead_centre", r"\frac{d^2 x}{dt^2}", "a"),
+    ("polhode_constants", "ω₃²", "a"), ("polhode_constants", r"\omega_3^2", "a"), ("relative_rotation", "cos α", "a"), ("angle_between", "cos(α/2)", "a"),
+    ("angle_between", r"\cos\frac{\alpha}{2}", "a"), ("only_sum_of_angles", "R(1,1)", "a"), ("speed_of_rotation", "|ω|", "a"), ("determinant", "det B", "a"),
+    ("polhode_constants", "ω₃²", "b"), ("angle_between", "cos(α/2)", "b"), ("level_precession", "9.81/9.81 · 2 rad/s", "b"), ("rod_about_end", "m L²/3", "b"),
+    ("rod_about_end", "3/4", "b"), ("speed_of_rotation", "60 rpm", "b"), ("speed_of_rotation", "|ω| ≈ 60 rpm", "b"),
+])  # fmt: skip
+def test_the_name_of_the_quantity_may_stand_in_front(template, left, key):
+    exercise = symrot.exercise(template)[0]
+    question = next(each for each in exercise.questions if each.key == key)
+    answer = question.answer if key == "a" else f"{question.decimal} {question.unit}"
+    mark = next(each for each in symrot.grade(exercise, {key: f"{left} = {answer}"}) if each.key == key)
+    assert mark.outcome == "right", mark
+
+
+@pytest.mark.parametrize("answer", ["2 I = 4 kg m^2", "1/I_O = 4 kg m^2", "-I = 4 kg m^2", "I/2 = 4 kg m²", "I² = 4 kg m^2", "5 >= 4 kg m^2", "3 != 4 kg m^2", r"I \ne 4 kg m^2"])  # fmt: skip
+def test_a_number_for_something_else_is_not_right(answer):
+    mark = symrot.grade(ROD, {"b": answer}).marks[1]
+    assert mark.outcome == "unread" and mark.credit == 0, mark
+
+
+@pytest.mark.parametrize("answer", ["4·10⁰ kg m²", "4000·10⁻³ kg m²", "0.04 · 10² kg·m²", "4 N m s²", "4.02 kg m^2", "3.98 kg m^2"])  # fmt: skip
+def test_powers_may_be_written_with_raised_digits(answer):
+    assert symrot.grade(ROD, {"b": answer}).marks[1].outcome == "right"
+
+
+@pytest.mark.parametrize("template, answer", [
+    ("level_precession", "mgh/Cω₃"), ("level_precession", "mgh/ω₃C"), ("level_precession", "mgh/Comega_3"), ("level_precession", "{mgh}/{C omega_3}"),
+    ("period_of_rod", "2π√(2L/(3g))"), ("period_of_rod", "√(8π²L/(3g))"),
+])  # fmt: skip
+def test_letters_written_together_divide_together(template, answer):
+    """Without Greek letters, mgh/CL already divided by both C and L."""
+    mark = symrot.grade(symrot.exercise(template)[0], [answer]).marks[0]
+    assert mark.outcome == "right", mark
+
+
+@pytest.mark.parametrize("answer", [
+    "atan2(A ω_1, C ω_3)", "arccos(C ω_3/√(A²ω_1² + C²ω_3²))", "arcsin(A ω_1/√(A²ω_1² + C²ω_3²))", "π/2 - arctan(C ω_3/(A ω_1))",
+])  # fmt: skip
+def test_formulas_are_equal_if_they_are_for_all_numbers_of_the_exercise(answer):
+    """All rates of this template are positive, so that these formulas give the same angle."""
+    mark = symrot.grade(symrot.exercise("angle_of_momentum")[0], [answer]).marks[0]
+    assert mark.outcome == "right", mark
+    wrong = symrot.grade(symrot.exercise("angle_of_momentum")[0], [answer.replace("ω_3", "ω_1")]).marks[0]
+    assert wrong.outcome == "wrong", wrong

@@ -150,6 +150,43 @@ def test_arc_tangents_at_zeros_and_beyond_numbers():
 
 
 @needs_cc
+@pytest.mark.parametrize(("end", "kind"), [("", np.float64), ("f", np.float32)], ids=["double", "float"])
+def test_a_batch_chooses_as_one_sample_does_at_zeros_of_either_sign(end, kind, tmp_path):
+    """-0.0 >= 0.0 is true. The difference -0.0 - 0.0 has the sign of a negative number."""
+    library = tmp_path / "kernel.so"
+    compiled(COMPILERS[0], "-O2", "-shared", "-fPIC", KERNELS / "mrp_of_quaternion.c", "-o", library, "-lm")
+    loaded = ctypes.CDLL(str(library))
+    one, batch = (getattr(loaded, f"symrot_mrp_of_quaternion{end}{form}") for form in ("", "_batch"))
+    halves = [(zero, 0.6, -0.8, other) for zero in (0.0, -0.0, 0.6, -0.6) for other in (0.0, -0.0)]
+    given, found = np.array(halves, kind).T.copy(), np.empty((3, len(halves)), kind)
+    batch(ctypes.c_size_t(len(halves)), given.ctypes, found.ctypes)
+    for sample, place in zip(given.T.copy(), range(len(halves)), strict=True):
+        wanted = np.empty(3, kind)
+        one(sample.ctypes, wanted.ctypes)
+        assert np.array_equal(found[:, place], wanted), sample
+
+
+@needs_cc
+@pytest.mark.parametrize(("real", "end"), [("double", ""), ("float", "f")])
+def test_choices_without_branches_compare_as_c_does(real, end, tmp_path):
+    """All pairs of finite numbers of different size and sign, zeros of either sign included."""
+    numbers = [sign * size for sign in (1.0, -1.0) for size in (0.0, 1e-45, 1e-30, 1.0, 1.0000001, 3e38)]
+    rows = ", ".join(f"({real}){number!r}" for number in numbers)
+    checks = "".join(
+        f'    if (symrot_{name}{end}(x, y, 1, 2) != (x {relation} y ? 1 : 2)) return printf("%g {relation} %g\\n", (double)x, (double)y);\n'
+        for name, relation in (("select_lt", "<"), ("select_eq", "=="), ("choose_ge", ">="))
+    )
+    (tmp_path / "symrot_math.h").write_text(math_header())
+    (tmp_path / "choices.c").write_text(
+        f'#include <stdio.h>\n#include "symrot_math.h"\nint main(void)\n{{\n    volatile {real} numbers[] = {{{rows}}};\n'
+        f"    for (int i = 0; i < {len(numbers)}; ++i) for (int j = 0; j < {len(numbers)}; ++j) {{\n"
+        f"    const {real} x = numbers[i], y = numbers[j];\n{checks}    }}\n    return 0;\n}}\n"
+    )
+    compiled(COMPILERS[0], "-O2", tmp_path / "choices.c", "-o", tmp_path / "choices", "-lm")
+    assert subprocess.run([tmp_path / "choices"], capture_output=True, text=True).stdout == ""
+
+
+@needs_cc
 def test_a_power_that_overflows_is_seen(monkeypatch):
     """Where x^3 overflows, (x - sin x)/x^3 is computed as 0, but its value is 1/x^2: the measurement shows this error."""
 

@@ -1,6 +1,7 @@
 """Derivatives of motions through the switches of torques, against closed forms and where they do not exist."""
 
 import json
+from fractions import Fraction
 
 import numpy as np
 import pytest
@@ -176,3 +177,42 @@ def test_a_torque_with_an_infinite_slope_after_a_switch_is_refused():
     with pytest.raises(PropagationError, match=r"after t = 1.0 s: the slope of the torque is not finite there"):
         symrot.propagate(content, t=[2], sensitivities=["c"])
     assert symrot.propagate(content, t=[2], sensitivities=["omega_3"]).sensitivities.omega[0, 2, 0] == 1.0
+
+
+EARLIER = "1999999999999/2000000000000"  # 1 - 5e-13: earlier than 1 s by less than the rounding errors of a switch
+
+
+@needs_compiler
+@pytest.mark.parametrize("earlier", ["where(t > c, 4, 0)", "where(omega_3 > c, 4, 0)"])
+def test_two_switches_at_once_just_after_a_third_have_a_derivative_each(earlier):
+    """A sphere with unit moments: omega_1 is 3 - a + 2 (3 - b), and omega_2 is 4 (3 - c) for omega_3 = t."""
+    torque = ["where(t > a, 1, 0) + where(t > b, 2, 0)", earlier, "1"]
+    content = scene(torque, {"a": 1, "b": 1, "c": EARLIER}, (0, 0, 0), principal=(1, 1, 1))
+    motion = symrot.propagate(content, t=[3], sensitivities=["a", "b", "c"])
+    assert np.allclose(motion.sensitivities.omega[0], [[-1, -2, 0], [0, 0, -4], [0, 0, 0]], rtol=0, atol=1e-12)
+
+
+@needs_compiler
+@pytest.mark.parametrize("between", ["", " + where(t > d, 1, 0)"])
+def test_a_switch_in_between_does_not_separate_two_switches_that_depend_on_each_other(between):
+    torque = ["0", "0", "where(t > a, 1, 0)*where(t > b, 1, 2)" + between]
+    values = {"a": "999999999997/1000000000000", "b": 1} | ({"d": "999999999999/1000000000000"} if between else {})
+    with pytest.raises(PropagationError, match="switch at the same time"):
+        symrot.propagate(scene(torque, values, (0, 0, 1)), sensitivities=["a", "b", *(["d"] if between else [])])
+
+
+@needs_compiler
+@pytest.mark.parametrize("time", ["1", "2/7"])
+def test_the_derivatives_of_a_switching_time_are_those_of_the_function_that_switches(time):
+    """The functions switch at the times a, b and c, of which c is earlier by less than a located time is exact."""
+    torque = ["where(t > a, 1, 0) + where(t > b, 2, 0)", "where(omega_3 > c, 4, 0)", "1"]
+    earlier = str(Fraction(time) * (1 - Fraction(4, 10**13)))
+    content = scene(torque, {"a": time, "b": time, "c": earlier}, (0, 0, 0), principal=(1, 1, 1))
+    motion = symrot.propagate(content, t=[3], sensitivities=["a", "b", "c"])
+    expected = {"a < t": [1, 0, 0], "b < t": [0, 1, 0], "c < omega_3": [0, 0, 1]}
+    # a function that switches and switches back at one instant has no derivatives there
+    slopes = [
+        (each.function, each.slopes) for each in motion.sensitivities.switchings if np.isfinite(each.slopes).all()
+    ]
+    assert {function for function, _ in slopes} == expected.keys()
+    assert all(np.allclose(own, expected[function], rtol=0, atol=1e-9) for function, own in slopes)

@@ -169,8 +169,8 @@ def test_folders_and_devices_are_no_files(tmp_path):
     ({"interpolation": "linear"}, 'one of "cubic_spline", got'),
     ({"frame": "orbit"}, 'one of "body", "space"'),
     ({"switching_times": 2}, "a list of times"),
-    ({"switching_times": [2]}, r"switching_times: expected times of two samples each.*got 2.0 s"),
-    ({"switching_times": [9]}, r"switching_times: expected times of two samples each.*got 9.0 s"),
+    ({"switching_times": [2]}, r"switching_times: expected times that occur twice.*got 2.0 s"),
+    ({"switching_times": [9]}, r"switching_times: expected times that occur twice.*got 9.0 s"),
     ({"t": [0, 1e-99, 2, 3, 4], "moment": [[0, 0, 0], [1e10, 0, 0]] + [[0, 0, 0]] * 3}, "at most 1e.100 N m/s between them"),
     ({"units": "N m"}, "one of the keys kind, t, moment, file"),
 ])  # fmt: skip

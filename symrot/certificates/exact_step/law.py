@@ -15,6 +15,7 @@ from typing import Any
 
 from symrot.certificates.c_machine.machine import Machine
 from symrot.certificates.c_machine.values import Place
+from symrot.certificates.exact_step.motion import LAW
 from symrot.errors import CertificateError
 from symrot.formula.exact_numbers import PI
 from symrot.formula.program import Program
@@ -29,10 +30,6 @@ LIMIT = Decimal(10) ** -DIGITS
 PRECISION = 60  # digits of the numbers
 STATES = 12
 """Number of states at which the equations are checked: three with any omega, nine with omega near a body axis."""
-LAW = (
-    "for dt = 0 the state is unchanged, and the derivative of the new state with respect to dt is the rates at the "
-    "new state"
-)
 _TERMS = 60  # of the series of sine and cosine, together, for angles of at most pi/4
 
 _State = tuple[list[Decimal], Decimal]

@@ -17,12 +17,13 @@ from symrot.codegen.steps import SIZE
 from symrot.errors import CertificateError
 from symrot.formula.program import Program
 
-__all__ = ["motion_section", "require_limits"]
+__all__ = ["LAW", "motion_section", "require_limits"]
 
 LAW = (
     "for dt = 0 the state is unchanged, and the derivative of the new state with respect to dt is the rates at the "
     "new state"
 )
+"""The law of an exact step, in the words of certificates."""
 # a wrong formula with one square root holds at a random point where the root exists with a probability of at most
 # 8 degree/PRIME
 FACTOR = 8

@@ -35,7 +35,11 @@ def _is_imaginary_trace(node: Node) -> bool:
 
 
 def _trace(terms: Sequence[Node]) -> Node | None:
-    """Return ``trace(M)`` for the two terms of ``trace(M)/2 + i*trace(-i M)/2``; None for other terms."""
+    """Return ``trace(M)`` for the terms ``trace(M)/2`` and ``i*trace(-i M)/2``; None for other terms.
+
+    symrot itself writes the trace of a complex 2 x 2 matrix as the sum of these terms, where M is the real 4 x 4 matrix
+    that it uses in place of the complex one. This function returns what the author wrote.
+    """
     traces = [[factor for factor in term.args if factor.value == "trace"] for term in terms if term.kind == "product"]
     if len(terms) != 2 or [len(own) for own in traces] != [1, 1] or not _is_imaginary_trace(traces[1][0]):
         return None
@@ -47,7 +51,11 @@ def _trace(terms: Sequence[Node]) -> Node | None:
 
 
 def _determinant(factors: Sequence[Node]) -> Node | None:
-    """Return ``det(M)`` for the factors 1/2 and ``trace(M) trace(M) - trace(M M)``; None for other factors."""
+    """Return ``det(M)`` for the factors 1/2 and ``trace(M) trace(M) - trace(M M)``; None for other factors.
+
+    symrot itself writes the determinant of a complex 2 x 2 matrix as this product. This function returns what the
+    author wrote.
+    """
     if len(factors) != 2 or factors[0] != Node("inv", None, (number(2),)) or factors[1].kind != "sum":
         return None
     square, *rest = factors[1].args
@@ -59,8 +67,9 @@ def _determinant(factors: Sequence[Node]) -> Node | None:
 
 
 def inverse_of(side: Node, source: str) -> Node | None:
-    """Return q for a side ``conjugate(q)/dot(q, q)`` that the text ``source`` writes as a power, ``q^-1``; else
-    None.
+    """Return q for a side ``conjugate(q)/dot(q, q)`` if the text ``source`` contains a power such as ``q^-1``.
+
+    Return None for any other side or text.
     """
     if not any(mark in source for mark in INVERSES) or side.kind != "product" or len(side.args) != 2:
         return None

@@ -36,10 +36,13 @@ SKEW_LETTER = re.compile(r"[A-DF-HJ-Z]|Omega")
 """Pattern of the letters that may be skew matrices: Ω and all capitals but E and I, which are unit matrices."""
 
 UNITS = ("I", "E", "I_3", "E_3")
+"""Names of unit matrices."""
+
 ANGLES = re.compile(r"(var)?(theta|phi)|alpha|beta|gamma|psi|delta")
+"""Pattern of the names of angles in exponents, such as θ in ``R = e^(θ K)``."""
+
 ROTATION = re.compile(r"[RCQA](_\w+)?")
-"""Patterns of the names of angles in exponents, such as θ in ``R = e^(θ K)``, and of the names of rotation matrices,
-such as R."""
+"""Pattern of the names of rotation matrices, such as R in ``R = e^(θ K)``."""
 
 OMEGA = ("omega", "w")
 """Names of the angular velocity ω in ``Ω(ω)``, the matrix in ``q' = 1/2 Ω(ω) q``."""
@@ -100,12 +103,16 @@ def with_matrices_of_vectors(
 
 
 def _axis_name(letter: str, used: Collection[str]) -> str:
-    """Return a name for the vector whose skew matrix is ``letter``: k for K; n if the claim uses k otherwise."""
+    """Return a name for the vector whose skew matrix is ``letter``: k for K, or n if k is in ``used``."""
     return letter.lower() if letter.lower() not in used else "n"
 
 
 def _skew_letters(node: Node, hats: Collection[str], known: Collection[str]) -> Iterator[str]:
-    """Yield K for a sum such as ``I + sin(theta)*K + (1 - cos(theta))*K^2``; nothing for other sums."""
+    """Yield the letter of a skew matrix in a sum of Rodrigues' form, K in ``I + sin(theta)*K + (1 - cos(theta))*K^2``.
+
+    Nothing is yielded for other sums. A letter may be a skew matrix if it is one of ``hats``, the names with a hat, or
+    if it is Ω or a capital other than E and I. The names in ``known``, which the claim defines, are never yielded.
+    """
     terms = [factors_of(term) for term in node.args]
     has_unit = any(factor.value in UNITS or factor == number(1) for term in terms for factor in term)
     by_name: dict[str, list[set[str]]] = {}
@@ -149,7 +156,11 @@ def _exponent(node: Node) -> Node | None:
 
 
 def _in_exponents(sides: Sequence[Node], hats: Collection[str], known: Collection[str]) -> Iterator[str]:
-    """Yield the letters of skew matrices in exponents: those with a hat, and K in ``R = e^(theta K)``."""
+    """Yield the letters of skew matrices in exponents, which are products of such a letter and an angle.
+
+    A letter in ``hats``, the names with a hat, is yielded from any such exponent. A letter K without a hat is yielded
+    only if the equation is ``R = e^(theta K)``. The names in ``known``, which the claim defines, are never yielded.
+    """
     for side, other in (sides, sides[::-1]):
         names_rotation = other.kind == "name" and ROTATION.fullmatch(str(other.value)) is not None
         for node in nodes_of(side):
@@ -166,8 +177,8 @@ def _rewritten(tree: Node, axes: Mapping[str, str]) -> Node:
     """Return a tree with ``skew(k)`` in place of K and a rotation matrix in place of an exponential such as
     ``e^(theta*K)``.
 
-    ``axes`` maps K to k. The scalar product ``dot(K, K)``, as which K^2 may have been read, becomes ``skew(k)^2``. In a
-    sum with a skew matrix, a term E becomes the unit matrix I.
+    ``axes`` maps the name K of a skew matrix to the name k of its vector. If K^2 was read as the scalar product
+    ``dot(K, K)``, it becomes ``skew(k)^2``. In a sum with a skew matrix, a term E becomes the unit matrix I.
     """
     if (rotation := _rotation_of_exponential(tree, axes)) is not None:
         return rotation
@@ -183,7 +194,10 @@ def _rewritten(tree: Node, axes: Mapping[str, str]) -> Node:
 
 
 def _rotation_of_exponential(tree: Node, axes: Mapping[str, str]) -> Node | None:
-    """Return the tree of the rotation matrix for ``exp(theta*K)`` and ``exp(skew(v))``; None for other formulas."""
+    """Return the tree of the rotation matrix for ``exp(theta*K)`` and ``exp(skew(v))``; None for other formulas.
+
+    ``axes`` maps the name K of a skew matrix to the name k of its vector.
+    """
     exponent = _exponent(tree)
     if exponent is None:
         return None
@@ -201,7 +215,10 @@ def _rotation_of_exponential(tree: Node, axes: Mapping[str, str]) -> Node | None
 
 
 def _exponentials(tree: Node, axes: Mapping[str, str]) -> Iterator[tuple[Node, Node]]:
-    """Yield (rotation matrix, exponential) for each exponential of a skew matrix in a tree."""
+    """Yield (rotation matrix, exponential) for each exponential of a skew matrix in a tree, such as ``e^(theta*K)``.
+
+    ``axes`` maps the name K of a skew matrix to the name k of its vector.
+    """
     for node in nodes_of(tree):
         if (rotation := _rotation_of_exponential(node, axes)) is not None:
             yield read_expression(text(rotation)), node

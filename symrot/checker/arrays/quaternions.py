@@ -59,8 +59,7 @@ class Quaternions:
 def used_quaternions(
     relation: tuple[str, Node, Node], vectors: Collection[str], shapes: Mapping[str, Shape], known: Collection[str]
 ) -> Quaternions:
-    """Return the quaternions that a relation uses, as q in ``q v q*``, and the relation with ``qmul(q, v)`` for
-    products.
+    """Return the quaternions of an equation, such as q in ``q v q*``, and the equation with ``qmul(q, v)`` for ``q v``.
 
     Parameters
     ----------
@@ -118,7 +117,7 @@ def _has_units(sides: Sequence[Node], others: Collection[str]) -> bool:
 
 
 def _of_units(relation: tuple[str, Node, Node]) -> Quaternions:
-    """Return the units i, j and k with their definitions, and the ``relation``, ``i j = k``, as ``qmul(i, j) = k``."""
+    """Return the equation ``qmul(i, j) = k`` for ``i j = k``, with the definitions of the units i, j and k in it."""
     sign, left, right = relation
     reader = _Products(tuple(UNITS), set())
     sides = [reader.read(_without_squares(side)) for side in (left, right)]
@@ -131,7 +130,7 @@ def _of_units(relation: tuple[str, Node, Node]) -> Quaternions:
 
 
 def _by_components(relation: tuple[str, Node, Node], known: Collection[str]) -> Quaternions | None:
-    """Return ``q = [a, b, c, d]``, a column, for an equation ``q = a + b i + c j + d k``; None for other equations."""
+    """Return the equation ``q = [a, b, c, d]`` of columns for ``q = a + b i + c j + d k``; None for other equations."""
     sign, left, right = relation
     if left.kind != "name" or str(left.value)[0] not in LETTERS or {*UNITS, left.value} & {*known}:
         return None
@@ -144,9 +143,9 @@ def _by_components(relation: tuple[str, Node, Node], known: Collection[str]) -> 
 
 
 def _components(node: Node) -> tuple[list[Node], ...] | None:
-    """Return the lists of terms of a formula's scalar part, and of its coefficients of the units i, j and k.
+    """Return four lists: the terms of a formula's scalar part, and those of its coefficients of i, j and k.
 
-    For ``a + s*(x*i + y*j)`` these four lists are [a], [s*x], [s*y] and []. None if the formula is not linear in i, j
+    For ``a + s*(x*i + y*j)`` these lists are [a], [s*x], [s*y] and []. Return None if the formula is not linear in i, j
     and k.
     """
     if not names_in(node) & {*UNITS}:
@@ -198,7 +197,10 @@ def quaternion_product(left: Node, right: Node) -> Node:
 def _quaternion_names(
     sides: Sequence[Node], vectors: Collection[str], shapes: Mapping[str, Shape], known: Collection[str]
 ) -> tuple[str, ...]:
-    """Return the names that a claim uses as quaternions, as q in ``q v q*``, except ``vectors`` and ``known`` names."""
+    """Return the names of quaternions in a claim, such as q in ``q v q*``, except names in ``vectors`` and ``known``.
+
+    ``vectors`` are the names of vectors, ``known`` are the names that the claim defines.
+    """
     names: dict[str, None] = {}
 
     def add(node: Node) -> None:
@@ -215,7 +217,7 @@ def _quaternion_names(
                     add(factor)
         elif node.kind == "call" and node.value == CONJUGATE:
             add(node.args[0])
-    for factor in _turning_quaternion(sides):
+    for factor in _unmarked_quaternion(sides):
         add(factor)
     used = {str(node.value) for node in everything if node.kind == "name"}
     for node in everything:
@@ -238,8 +240,11 @@ def _quaternion_names(
     return tuple(names)
 
 
-def _turning_quaternion(sides: Sequence[Node]) -> Sequence[Node]:
-    """Return [q] for an equation of a quaternion q such as ``q' = 1/2 omega q``; () for other equations."""
+def _unmarked_quaternion(sides: Sequence[Node]) -> Sequence[Node]:
+    """Return [q] for equations of a quaternion q without a sign such as ⊗ or a star; () for other equations.
+
+    The equations are ``q' = 1/2 omega q`` and ``v' = q v q``.
+    """
     for side, other in ((sides[0], sides[1]), (sides[1], sides[0])):
         factors = [untimed(factor) for factor in other.args if factor.kind != "number" and factor.kind != "inv"]
         if other.kind != "product" or not all(factor.kind == "name" for factor in factors):
@@ -259,8 +264,9 @@ def _turning_quaternion(sides: Sequence[Node]) -> Sequence[Node]:
 
 
 def _rotating(side: Node, other: Node) -> Node | None:
-    """Return q for a side ``q v q^-1`` if the ``other`` side is the rotated vector, written ``R v`` or ``v'``; else
-    None.
+    """Return q for a side ``q v q^-1`` if the ``other`` side is the rotated vector, written ``R v`` or ``v'``.
+
+    Return None for all other sides.
     """
     if side.kind != "product" or len(side.args) != 3:
         return None
@@ -337,7 +343,7 @@ class _Products:
         return _is_angular(factor) and factor.value not in self.names and factor.value not in self.vectors
 
     def multiplied(self, node: Node) -> Node:
-        """Return a product in which quaternions, and the vectors between them, are multiplied by ``qmul``.
+        """Return a product in which ``qmul`` multiplies the quaternions and the vectors between quaternions.
 
         Scalar factors stay in front: ``2*q*v*p`` becomes ``2*qmul(qmul(q, v), p)``.
         """
@@ -364,8 +370,10 @@ def _is_angular(node: Node) -> bool:
 
 
 def _of_one_shape(sides: Sequence[Node], shapes: Mapping[str, Shape]) -> tuple[Node, Node]:
-    """Return both sides with one shape: a scalar s becomes (s, 0, 0, 0) next to a quaternion, and a quaternion its
-    vector part next to a vector.
+    """Return both sides of an equation, changed so that they have the same number of components.
+
+    If the other side is a quaternion, a scalar s becomes (s, 0, 0, 0). If the other side is a vector, a quaternion is
+    replaced by its vector part.
     """
     made = []
     for side, other in ((sides[0], sides[1]), (sides[1], sides[0])):
@@ -380,16 +388,17 @@ def _of_one_shape(sides: Sequence[Node], shapes: Mapping[str, Shape]) -> tuple[N
 
 
 def _definitions(name: str, used: Collection[str], moving: bool) -> list[tuple[str, Node]]:
-    """Return the definitions of the quaternion ``name``, as q = (q_0, q_1, q_2, q_3), and of its vector part, if used.
+    """Return the definition q = (q_0, q_1, q_2, q_3) of the quaternion ``name``.
 
-    If ``moving``, the components are functions of time.
+    If ``used`` contains a name for its vector part, such as ``q_vec``, the definition of this name is put first. If
+    ``moving``, the components are functions of time.
     """
     style = "" if f"{name}0" in used or f"{name}1" in used else "_"
     parts = [
         Node("call", f"{name}{style}{n}", (TIME,)) if moving else Node("name", f"{name}{style}{n}") for n in range(4)
     ]
     own = [(name, column_vector(parts))]
-    # a name for the vector part, as q_v, is defined first
+
     vector = next((f"{name}{ending}" for ending in ENDINGS if f"{name}{ending}" in used), "")
     return [(vector, column_vector(parts[1:])), *own] if vector else own
 

@@ -171,11 +171,16 @@ def _det(scope: Scope, node: Node) -> Expr:
 
 
 def _determinant(scope: Scope, matrix: ImmutableMatrix, node: Node, most_products: int) -> Expr:
-    """Return a determinant; raise InputError if its expansion has more than ``most_products`` products."""
+    """Return a determinant; raise InputError if it expands to more than ``most_products`` products of entries."""
     products = products_of_determinant(matrix)
     if products > most_products:
-        raise scope.fail(node, f"a determinant of at most {most_products} products instead of {products}")
+        raise scope.fail(node, _smaller_determinant(most_products, products))
     return _by_cofactors(matrix) if pieces(matrix) > LARGE_MATRIX else matrix.det(method="berkowitz")
+
+
+def _smaller_determinant(most: int, products: int) -> str:
+    """Return words for an error message: a determinant expands to ``products`` products, more than ``most``."""
+    return f"a smaller matrix (its determinant expands to {products} products of entries, symrot takes at most {most})"
 
 
 def _by_cofactors(matrix: ImmutableMatrix) -> Expr:
@@ -195,7 +200,7 @@ def _inverse_of(scope: Scope, node: Node) -> ImmutableMatrix:
 def inverted(scope: Scope, matrix: ImmutableMatrix, node: Node) -> ImmutableMatrix:
     """Return the inverse of a matrix, and record its determinant as a divisor.
 
-    Raise InputError if the determinant is zero or has more than LARGEST_INVERSE products.
+    Raise InputError if the determinant is zero or expands to more than LARGEST_INVERSE products of entries.
     """
     determinant = _determinant(scope, matrix, node, LARGEST_INVERSE)
     from symrot.exact import normal_form
@@ -211,7 +216,7 @@ def _adjugate(scope: Scope, node: Node) -> ImmutableMatrix:
     matrix = _square(scope, node)
     products = products_of_determinant(matrix)
     if products > LARGEST_INVERSE:
-        raise scope.fail(node.args[0], f"a determinant of at most {LARGEST_INVERSE} products instead of {products}")
+        raise scope.fail(node.args[0], _smaller_determinant(LARGEST_INVERSE, products))
     return matrix.adjugate(method="berkowitz")
 
 
@@ -260,8 +265,9 @@ def _of_blocks(scope: Scope, node: Node, rows: Any) -> ImmutableMatrix:
 
 
 def _block(cell: Any, height: int, width: int) -> ImmutableMatrix | None:
-    """Return an entry of a block matrix ``[[A, b], [0, 1]]`` as a matrix of ``height`` x ``width``; None if it does not
-    fit.
+    """Return an entry of a block matrix ``[[A, b], [0, 1]]`` as a matrix of ``height`` x ``width``.
+
+    Return None if the entry has another height or width.
     """
     # a scalar 0 stands for a zero matrix of any size
     if cell == 0 and not is_matrix(cell):
@@ -281,7 +287,7 @@ def _qmul(scope: Scope, node: Node) -> ImmutableMatrix:
 
 
 def _quaternion(scope: Scope, node: Node) -> ImmutableMatrix:
-    """Return the four components of a quaternion, scalar part first; a vector v gives 0 and the components of v."""
+    """Return the four components of a quaternion, scalar part first: 0 and the components of v for a vector v."""
     value = scope.evaluate(node)
     if isinstance(value, tuple):
         value = _of_blocks(scope, node, value)
@@ -331,8 +337,14 @@ def _is_rate(value: Expr) -> bool:
 def _integrate(scope: Scope, node: Node) -> Any:
     """Return an integral; a vector or matrix is integrated entry by entry.
 
-    The divisors of the integral are recorded. InputError is raised for divisors that contain the variable and may be
-    zero, and for such radicands that may be negative.
+    The divisors of the integral are recorded.
+
+    Raises
+    ------
+    InputError
+        If the integrand has a divisor that contains the variable of integration and may be zero, or a root of a formula
+        that contains this variable and may be negative. Also for a wrong range, and for an integral that symrot cannot
+        compute.
     """
     integrand, *ranges = node.args
     limits = []

@@ -85,7 +85,7 @@ class TypedNotation:
         args = [self._spelled(child, node.kind) for child in node.args]
         if node.kind == "product":
             args = [
-                Node("name", f"({text(factor)})") if _is_number_power(factor) and _is_over_digit(after) else factor
+                Node("name", f"({text(factor)})") if _is_odd_power(factor) and _is_over_digits(after) else factor
                 for factor, after in zip(args, [*args[1:], END], strict=True)
             ]
         return replace(node, args=tuple(args))
@@ -121,7 +121,8 @@ class TypedNotation:
 def with_formulas(source: str, formula: Callable[[Node], str], signs: Mapping[str, str]) -> str:
     """Return a condition such as ``0 <= x**2`` in another notation, or unchanged if it is unreadable.
 
-    ``formula`` returns the text of a formula in that notation; ``signs`` maps signs such as ``==`` to its signs.
+    ``formula`` returns the text of a formula in the other notation. ``signs`` maps ``==`` and other signs of SymPy
+    syntax to the signs of the other notation.
     """
     pieces = SIGN.split(source)
     try:
@@ -141,7 +142,7 @@ def decimal(value: Fraction) -> str:
 
 
 def notation_of(reading: Reading) -> TypedNotation:
-    """Return the notation, SymPy syntax or plain text, in which the text of a reading (interpretation) was typed."""
+    """Return the notation in which a user typed the text of a reading (interpretation): SymPy syntax or plain text."""
     return TypedNotation(reading.plain, dict(reading.spelling), reading.timed)
 
 
@@ -152,11 +153,15 @@ END = Node("name", "")
 """A placeholder after the last factor of a product: each factor is examined together with the one after it."""
 
 
-def _is_number_power(node: Node) -> bool:
-    """Return whether a tree is a power whose exponent is one of the digits 1, 3, 5, 7 and 9, such as x^3."""
-    # such a power needs brackets before a slash: x^3/2 might be read as x^(3/2)
+def _is_odd_power(node: Node) -> bool:
+    """Return whether a tree in the user's spelling is a power whose exponent is the digit 1, 3, 5, 7 or 9: x^3.
+
+    Such a power gets brackets before a slash and a number, since x^3/2 might be read as x^(3/2). An even power gets
+    none, since everybody reads L^2/3 as (L^2)/3.
+    """
     return node.kind == "power" and node.args[1].kind == "name" and str(node.args[1].value) in ("1", "3", "5", "7", "9")
 
 
-def _is_over_digit(node: Node) -> bool:
+def _is_over_digits(node: Node) -> bool:
+    """Return whether a factor is a slash and a number of digits, such as ``/2``."""
     return node.kind == "inv" and str(node.args[0].value).isdigit()

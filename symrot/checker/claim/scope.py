@@ -54,7 +54,7 @@ class Scope(ABC):
     divisors : list of Divisor
         Divisors in the text that may be zero; each evaluation appends its own.
     radicands : list of Expr
-        Formulas that may be negative and must not, as under a root; each evaluation appends its own.
+        Formulas that must not be negative, such as those under a root; each evaluation appends its own.
     bases : list of Expr
         Bases of powers whose exponents are not numbers; they are assumed to be positive.
     """
@@ -157,9 +157,10 @@ class Scope(ABC):
             raise self.fail(node, f"a smaller number under a root (at most {MOST_BITS_FACTORED} bits, to be factored)")
 
     def take_root(self, value: Expr, node: Node) -> None:
-        """Record ``value``, a formula under a root, as one that must not be negative, unless it is such a number.
+        """Record that ``value``, a formula under a root, must not be negative.
 
-        Raise InputError for a negative number, and for a number too long to be factored.
+        A number that is zero or positive needs no record. Raise InputError for a negative number, and for a number too
+        long to be factored.
         """
         interval = enclosure(value) if value.is_number else None
         if (interval is None and value.is_negative) or (interval is not None and interval.b < 0):

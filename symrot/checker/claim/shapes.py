@@ -71,9 +71,9 @@ def _shape_of_call(node: Node, inner: list[Shape], shapes: Mapping[str, Shape]) 
 
 
 def with_unit_matrices(relation: tuple[str, Node, Node], shapes: Mapping[str, Shape]) -> tuple[str, Node, Node]:
-    """Return an equation with ``eye(3)`` for a scalar I or 1 that is added or equal to a 3 x 3 matrix: R in ``R - I``.
+    """Return an equation with ``eye(3)`` for I or 1 if it is added or equal to a 3 x 3 matrix, such as R in ``R - I``.
 
-    Other square matrices get the unit matrix of their size.
+    Next to a square matrix of another size, I or 1 becomes the unit matrix of that size.
     """
     sign, *sides = relation
     if any(_is_name_of(*pair) for pair in (sides, sides[::-1])):
@@ -88,9 +88,10 @@ def with_unit_matrices(relation: tuple[str, Node, Node], shapes: Mapping[str, Sh
 
 
 def _is_name_of(name: Node, matrix: Node) -> bool:
-    """Return whether an equation defines a matrix called as a unit matrix, as ``I = [[a, b], [c, d]]`` does.
+    """Return whether an equation defines a matrix under a usual name of the unit matrix: ``I = [[a, b], [c, d]]``.
 
-    A matrix of numbers alone is no definition.
+    ``name`` and ``matrix`` are the sides of the equation. A matrix without letters is no definition: then the equation
+    states a value of the unit matrix.
     """
     is_literal = matrix.kind == "list" or (matrix.kind == "call" and matrix.value == "Matrix")
     letters = [node for node in nodes_of(matrix) if node.kind == "name"]

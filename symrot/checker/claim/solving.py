@@ -51,8 +51,8 @@ def quantities_in(tree: Node) -> set[Quantity]:
 def solution(side: Node) -> tuple[Quantity, Solve] | None:
     """Return the only quantity (or the only rate) on a side of an equation, and a function that solves for it.
 
-    For the side ``2*k^2`` these are k and a function that turns the other side, I, into ``(I/2)^(1/2)``. None if the
-    side has several quantities or none, or operations such as a sum that are not inverted.
+    For the side ``2*k^2`` these are k and a function that turns the other side, I, into ``(I/2)^(1/2)``. Return None if
+    the side has no quantity or several, or an operation that symrot does not invert, such as a sum.
     """
     steps: list[Solve] = []
     while not is_name_or_rate(side):
@@ -99,7 +99,7 @@ def _after(steps: Sequence[Solve], tree: Node) -> Node:
 
 
 def without_common_factors(left: Node, right: Node) -> tuple[Node, Node]:
-    """Return both sides without the letters that are factors of both sides, as m in ``m*v**2/2 == m*g*h``."""
+    """Return both sides without the letters that are factors of both sides, such as m in ``m*v**2/2 == m*g*h``."""
     factors = [list(side.args) if side.kind == "product" else [side] for side in (left, right)]
     for factor in [*factors[0]]:
         if factor in factors[1] and is_name(factor) and quantities_in(factor):
@@ -109,11 +109,11 @@ def without_common_factors(left: Node, right: Node) -> tuple[Node, Node]:
 
 
 def with_highest_rate(left: Node, right: Node) -> tuple[Node, Node, Node] | None:
-    """Return (x'', m, -k*x) for ``m*x'' + k*x = 0``: the highest derivative, its coefficient, and the other terms on
-    the other side.
+    """Return (x'', m, -k*x) for ``m*x'' + k*x = 0``: the highest derivative, its coefficient, and the right side.
 
-    None unless the equation is linear in a single highest derivative, all derivatives are by time and of single names,
-    and a term without the highest derivative has a quantity.
+    The right side is the sum of the terms without the highest derivative, moved to the right. Return None unless the
+    equation is linear in a single highest derivative, and all derivatives are by time and of single names. Return None
+    also if the terms without the highest derivative are mere numbers.
     """
     terms = [*terms_of(left), *map(negated, terms_of(right))]
     derivatives = {node for node in nodes_of(*terms) if is_derivative(node)}

@@ -167,15 +167,15 @@ def used_vectors(sides: Sequence[Node], names: Mapping[str, bool]) -> tuple[Vect
 
 
 def _axes(name: str, used: Collection[str]) -> str:
-    """Return the endings of the names of a vector's components: "123" if ``used`` has a name such as ``a_1``.
+    """Return the endings of the names of a vector's components, as the names in ``used`` show.
 
-    They are "0123" or "1234" for a quaternion, and otherwise "xyz" (but "123" for R).
+    The endings are "123" if ``used`` has a name with a number, such as ``a_1``, and "xyz" otherwise. If ``used`` also
+    has ``a_0`` or ``a_4``, the vector is a quaternion with the endings "0123" or "1234". A vector R has the endings
+    "123" even without such names, because R_x is a rotation matrix.
     """
     numbers = [n for n in "01234" if f"{name}_{n}" in used or (n in "04" and f"{name}{n}" in used)]
     if {"0", "4"} & {*numbers} and {"1", "2", "3"} & {*numbers}:
-        # of a quaternion
         return "0123" if "0" in numbers else "1234"
-    # R_x means a rotation about x
     return "123" if numbers or name == "R" else "xyz"
 
 
@@ -196,15 +196,17 @@ def direction(vector: Node) -> Node:
 
 
 def beside_directions(factors: Sequence[Node]) -> list[Node]:
-    """Return the factors of a product with the length of v in place of v, if the direction of v is a factor too."""
-    # r times r with a hat is a vector: the first r is a length
+    """Return the factors of a product, where a vector v becomes its length if its direction v/|v| is also a factor.
+
+    In a text with r and with r under a hat, the product of both is a vector: the r without a hat is a length.
+    """
     return [length(factor) if direction(factor) in factors else factor for factor in factors]
 
 
 def may_be_mixed(name: str) -> bool:
     """Return whether ``name`` with a hat may be the direction of the vector that a text calls ``name`` without a hat.
 
-    False for names of axes such as x, i and e_1: with a hat they are axes, and without a hat x is a coordinate.
+    Return False for names of axes such as x, i and e_1: with a hat, x is an axis, and without a hat, a coordinate.
     """
     return name not in "xyzijk" and not name.startswith("e_")
 
@@ -240,7 +242,7 @@ def gyroscopic_tensors(sides: Sequence[Node]) -> Iterator[str]:
 
 
 def _lone_names(sides: Sequence[Node]) -> set[str]:
-    """Return the names that are a whole side of a claim and occur nowhere else in it, as L in ``L = r x p``."""
+    """Return the names that are a whole side of a claim and occur nowhere else in it, such as L in ``L = r x p``."""
     everywhere = [node.value for node in nodes_of(*sides) if node.kind == "name"]
     is_number = any(side.kind == "number" and side.value for side in sides)
     # a side such as 3 asks for the components: then no name is lone

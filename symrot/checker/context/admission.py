@@ -36,9 +36,9 @@ _STOP = frozenset({
     "formula", "theorem", "principal", "components", "component", "unit", "dq/dt", "omega", "b", "e", "b^-1", "=",
     "i", "squared", "acos", "asin", "atan2", "2", "without", "minus", "sign", "physical",
 })  # fmt: skip
-"""Words in the names of derived formulas that do not tell formulas for one quantity apart.
+"""Words in the names of derived formulas, such as "of" and "axis", that do not distinguish formulas for one quantity.
 
-The context of a claim (words about its names and its body) need not contain them for a formula to fit the claim."""
+For a formula to fit a claim, the claim's context (words about its names and its body) need not contain these words."""
 
 
 COMPONENTS = {
@@ -90,7 +90,7 @@ def admits_name(context: Context, name: str, quantity: str) -> bool:
 def is_usual_for_body(context: Context, sequence: str) -> bool:
     """Return whether books use an Euler sequence for the context's body: ZXZ or ZYZ for a top, any for other bodies.
 
-    True for any sequence if the context states one.
+    If the context states a sequence, return True for every sequence.
     """
     is_top = context.body is not None and context.body.kind.title in TITLES_OF_TOPS
     # the second angle of ZXZ and ZYZ tilts the axis of the top
@@ -151,7 +151,7 @@ the axis of symmetry."""
 def _has_axes(name: str, axes: str) -> bool:
     """Return whether the axis in a formula's ``name``, x in "moment of inertia of a disk, x axis", is one of ``axes``.
 
-    True also if the name has no axis, or if its body is neither a rod nor round.
+    Return True also if the name has no axis, or if its body is neither a rod nor round.
     """
     _, bodies = LINES["about a transverse axis through the centre"]
     axis = re.search(r", ([xyz]) axis", name)
@@ -173,10 +173,10 @@ def _is_along(name: str, line: str) -> bool:
 
 
 def _where_else(place: str, line: str, name: str) -> str:
-    """Return words for the axis of a formula called ``name``, which differs from the stated ``line``.
+    """Return words for the axis of a formula called ``name`` if the context states another axis, ``line``.
 
-    The words are ``place``, the point of the axis by the formula's name, such as "about an end". They are "about
-    another axis" if ``place`` is empty, or if ``line``, such as "about a diameter", goes through the same point.
+    Return ``place``, the place in the formula's name, such as "about an end". If it is empty, or if ``line``, such as
+    "about a diameter", goes through the same point of the body, return "about another axis".
     """
     _, bodies = LINES[line]
     places = [own for body, (own, _) in bodies.items() if body in bodies_of_formula(name)]
@@ -186,16 +186,17 @@ def _where_else(place: str, line: str, name: str) -> str:
 def _is_radial(name: str, quantity: str) -> bool:
     """Return whether the axis in a formula's ``name`` goes along the radius to a point of the rim or surface.
 
-    False also if the index of ``quantity`` names the axis, as in I_x.
+    Return False if the index of ``quantity`` states the axis, as in I_x.
     """
     # hardly anybody means this axis by "about a point of the rim"
     return place_of(name) in (RIM, SURFACE) and quantity[-1:] not in INDICES and not _is_along(name, "about a tangent")
 
 
 def is_component(name: str, quantity: str) -> bool:
-    """Return whether the name of a formula, such as "moment of inertia of a disk, z axis", agrees with an index.
+    """Return whether the name of a formula agrees with the index at the end of ``quantity``.
 
-    The index is at the end of ``quantity``: "z axis" agrees with I_zz and not with I_xx. True also without an index.
+    "Moment of inertia of a disk, z axis" agrees with I_zz and not with I_xx. A quantity without an index agrees with
+    every name.
     """
     axis = re.search(r", ([xyz]) axis", name)
     word = axis[1] if axis else name.partition(" ")[0] if " component" in name else ""
@@ -211,15 +212,17 @@ def place_exists(place: str) -> bool:
 
 
 def is_at_open_place(context: Context, name: str) -> bool:
-    """Return whether the point of the axis is left open: the context says only "about the pivot", or similar words.
+    """Return whether the context leaves open through which point of the body the axis of a formula goes.
 
-    True only if the formula called ``name`` is for an axis through one point of a body, such as an end.
+    Such a context says only "about the pivot", or similar words, while the formula's ``name`` states a body and a
+    point, such as an end.
     """
     places = {context.place, *(meaning.place for meaning in context.meanings)}
     return bool(places & {*OPEN_PLACES} and place_of(name) and bodies_of_formula(name))
 
 
 OPEN_PLACES = tuple(title for title, _, phrases in PLACES if not phrases)
+"""Titles in PLACES that leave the point of the body open: "about the fixed point", since no formula's name has it."""
 
 
 def admits_letters(context: Context, name: str, mapping: Mapping[str, str], letters: Iterable[str]) -> bool:
@@ -300,7 +303,7 @@ def plain(name: str) -> str:
 def guesses(context: Context, name: str, stated: str) -> list[str]:
     """Return the words in a formula's ``name`` that neither the context nor ``stated``, the claim's own words, imply.
 
-    The words of a place make one text, "about an end", and so do the words of a frame.
+    A place is returned as a whole, "about an end", and so is a frame, "in the body frame", not word by word.
     """
     # "moment of inertia z axis" is stated by I_zz
     words = [stated, context.frame, context.sequence, "moment of inertia" if "inertia" in stated else ""]

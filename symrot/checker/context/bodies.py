@@ -182,8 +182,9 @@ BODIES: tuple[Kind, ...] = (
     Kind("gyroscope", ("wheel", "gyroscopic wheel", "rotor"),
          ("a level axle", "steady precession", "of a top", "fast top")),
 )  # fmt: skip
-"""Every body that a user can name in words; the body with the longest phrase in the words is meant. In the names of
-derived formulas, the article is "a" also before a vowel: "a annulus"."""
+"""Every kind of body that a user can name in words. If the user's words contain phrases for several kinds, the kind
+with the longest phrase is taken. In the names of derived formulas, the article is "a" also before a vowel: "a
+annulus"."""
 
 ALONE = (" about one axis", " about the z axis")
 """Endings of the names of formulas that hold only for rotation about a fixed axis, not in general motion."""

@@ -23,7 +23,7 @@ _OF_AXES = re.compile(
 """Pattern of the words that say where an axis is, such as "about" and "diameter"."""
 
 _OF_RATE = re.compile(r"^d+(?=.)|_?d+ot$|(_prime)+$")
-"""Pattern of what a name of a rate has besides the name of its quantity, as dphi, phi_dot and phi_prime have."""
+"""Pattern of the mark of a rate in its name: the "d" of dphi, the "_dot" of phi_dot, the "_prime" of phi_prime."""
 
 
 def matrix_of(name: str) -> str:
@@ -38,7 +38,8 @@ class Meaning:
     Attributes
     ----------
     spellings : tuple of tuple of str
-        For each name, how it is spelled in trees: all readings of an ambiguous name; a rate has ``d`` in front.
+        For each name, its spellings in the tree of a parsed formula: ``omega`` for ω, ``dphi`` for φ'. An ambiguous
+        name has several spellings.
     quantity : Quantity
     place : str
         The title of a place, such as "about an end", or an empty text.
@@ -62,18 +63,21 @@ class Meaning:
 
     @cached_property
     def names(self) -> tuple[str, ...]:
-        """The names as they are spelled in trees."""
+        """All spellings of the names with this meaning, as in the tree of a parsed formula: omega for ω."""
         return tuple(dict.fromkeys(name for spelling in self.spellings for name in spelling))
 
     def is_of(self, name: str) -> bool:
-        """Return whether the meaning applies to ``name``.
+        """Return whether this meaning belongs to ``name``.
 
-        It applies to its own names, and to the entries of a vector or matrix among them: the meaning of L to L_x.
+        A meaning of a vector or matrix also belongs to its entries: that of L to L_x.
         """
         return self._is_spelled(name, self.names)
 
     def absent(self, names: set[str]) -> list[str]:
-        """Return those names, as they were typed, that neither are among ``names`` nor have an entry there."""
+        """Return the names of this meaning, as the user typed them, that do not occur among ``names``.
+
+        The name of a vector or matrix occurs if one of its entries does: I if I_xx is among ``names``.
+        """
         pairs = zip(self.written, self.spellings, strict=True)
         return [written for written, spelling in pairs if not any(self._is_spelled(name, spelling) for name in names)]
 
@@ -140,16 +144,16 @@ class Context:
         return " ".join(words for words in own if words)
 
     def fits(self, names: set[str], elsewhere: set[str]) -> bool:
-        """Return whether all names to which the context gives a meaning occur; the arguments are those of
-        :meth:`check_names`.
-        """
+        """Return whether :meth:`check_names` accepts these arguments."""
         return not self._absent(names, elsewhere)
 
     def check_names(self, names: set[str], elsewhere: set[str]) -> None:
-        """Raise InputError if a name to which the context gives a meaning does not occur.
+        """Raise InputError if the context gives a meaning to a name that does not occur.
 
-        Of the names of one meaning, at least one must be among ``names``, the names of the claim. The others may also
-        be letters of a body, or among ``elsewhere``, the names in hypotheses and definitions; a rate x_dot names x too.
+        One text of the context, such as "A, B = moment of inertia", can give one meaning to several names. At least one
+        of them must be among ``names``, the names of the claim. Each of the remaining names may also occur elsewhere:
+        as a letter for a dimension of a body, or among ``elsewhere``, the names in hypotheses and definitions. A rate
+        such as x_dot counts as an occurrence of x.
         """
         for name in self._absent(names, elsewhere):
             raise InputError(f"where: expected meanings only of names that occur in the claim, got {name!r}")
@@ -179,8 +183,9 @@ class Context:
                 continue
             if name in explicit and read_unit(explicit[name], name) != read_unit(meaning.quantity.unit):
                 raise InputError(
-                    f"where: expected a meaning of {meaning.written[0]} whose unit is {explicit[name]}, the unit "
-                    f"stated for {name}, got {meaning.quantity.title!r}, whose unit is {meaning.quantity.unit}"
+                    f"where: expected a quantity with the unit {explicit[name]} as the meaning of "
+                    f"{meaning.written[0]}, since this unit is stated for {name}, got {meaning.quantity.title!r}, "
+                    f"which has the unit {meaning.quantity.unit} (change one of the two statements)"
                 )
             units[name] = meaning.quantity.unit
         return units
@@ -242,7 +247,10 @@ def letters_of(tree: Node) -> Iterator[str]:
 
 
 def name_of(tree: Node) -> str | None:
-    """Return the name that a tree is, x for ``x(t)`` and ``dx`` for its derivative; None for any other formula."""
+    """Return the name if a tree is only a name, a function of time or a derivative of one; None for any other formula.
+
+    The name is x for ``x`` and ``x(t)``, and ``dx`` for the derivative of x.
+    """
     if is_derivative(tree):
         inner = name_of(tree.args[0])
         return None if inner is None else "d" * (len(tree.args) - 1) + inner

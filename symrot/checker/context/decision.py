@@ -45,8 +45,9 @@ MOST_DIAGNOSED = 4
 """The largest number of known formulas with which a false claim is compared to find its fault; a formula counts once
 for each assignment of letters."""
 
-MOST_COSTLY = 2.0
-"""The cost of a repair that replaces the whole formula by a derived one."""
+COST_OF_WHOLE = 2.0
+"""The cost of a repair that replaces the whole formula of a claim by a derived one. If the context leaves open through
+which point the axis goes, a claim is called "doubtful" only for a repair that costs less."""
 
 
 def in_context(claim: Claim, named: NamedFormula, verdict: Verdict) -> Verdict:
@@ -66,9 +67,10 @@ def in_context(claim: Claim, named: NamedFormula, verdict: Verdict) -> Verdict:
 def _with_all_words(claim: Claim, named: NamedFormula, verdict: Verdict) -> Verdict:
     """Return the verdict on a claim in its context, a weaker one if the check cannot use a word of the context.
 
-    ``verdict`` is the verdict without the context. If the context has an unused word, return "recognised" instead of
-    "true", and ``verdict`` instead of "false". If a word about the body is not understood, or the context does not say
-    where the pivot is, return "definition".
+    The claim is compared with the known formulas whose names fit the context, which gives a verdict such as "true" or
+    "false". If the comparison does not use a word of the context, "recognised" (equal to a known formula) replaces
+    "true", and ``verdict``, the verdict without the context, replaces "false". If symrot does not understand a word
+    about the body, or the context does not say where the pivot is, return "definition" (the claim is not judged).
     """
     # words about the body or its axis that symrot does not understand leave open what the claim means
     if obscure := claim.context.obscure:
@@ -95,8 +97,8 @@ def _with_all_words(claim: Claim, named: NamedFormula, verdict: Verdict) -> Verd
 
 
 MOST_EDITS = 40
-"""The largest number of edits of a claim's formula that are tried if symrot derives this formula, but for another
-quantity, body or point than the context states: an edit may give the formula that the context means."""
+"""The largest number of edits of a claim's formula that are tried as repairs of a formula that symrot derives for
+another quantity, body or point than the context states."""
 
 
 ENGLISH = ("from", "to", "that", "at", "between", "on", "of")
@@ -324,7 +326,7 @@ def _different(
         else:
             diagnosis = Diagnosis("derived", f"it is not the {candidate.identification.name}")
             if len({as_text(other.value) for other, _ in decisions}) == 1:
-                repairs = (Repair(f"{text(named.side)} == {as_text(candidate.value)}", "derived", MOST_COSTLY),)
+                repairs = (Repair(f"{text(named.side)} == {as_text(candidate.value)}", "derived", COST_OF_WHOLE),)
     return Verdict(
         "false", counterexample=decision.counterexample, diagnosis=diagnosis, repairs=repairs,
         recognised_as=(candidate.identification,),
@@ -359,7 +361,7 @@ def _near(claim: Claim, named: NamedFormula, decisions: Sequence[tuple[Meant, De
     # the claim leaves open which place its axis goes through, so that it cannot be called false
     for candidate, decision in decisions[:MOST_DIAGNOSED]:
         diagnosis, repairs = _diagnosed(claim, named, candidate, decision)
-        if repairs and repairs[0].cost < MOST_COSTLY and diagnosis.code != "two_faults":
+        if repairs and repairs[0].cost < COST_OF_WHOLE and diagnosis.code != "two_faults":
             readings = (candidate.identification,)
             return Verdict("doubtful", diagnosis=diagnosis, repairs=repairs, recognised_as=readings)
     return None

@@ -34,7 +34,7 @@ with the formula for each assignment."""
 
 MOST_CHOICES = 10_000
 """The largest number of assignments of a claim's letters to the symbols of one known formula that are tested. Most
-assignments fail: they contradict the context, or an index, as I_x does for the moment of inertia about y."""
+assignments fail because they contradict the context or an index: I_x cannot be the moment of inertia about y."""
 
 ANGLES = tuple(Symbol(symbol.name, real=True) for symbol in (*symbols.angles, *symbols.angle_rates))
 
@@ -135,10 +135,10 @@ def _root(square: Expr) -> Expr:
 
 
 def _unused_rates(mapping: Mapping[Expr, Expr], own: set[Expr]) -> dict[Expr, Expr]:
-    """Return a map from symbols for angle rates to derivatives, as ``{dphi: diff(phi(t), t)}``, for a known formula.
+    """Return a map from angle rates of a known formula to derivatives in a claim: ``{dphi: diff(phi(t), t)}``.
 
-    It has the rates that ``mapping``, from symbols of the known formula to letters of the claim, does not replace. It
-    is empty if ``own``, the symbols and derivatives of the claim, has no derivative.
+    ``mapping`` maps symbols of the known formula to letters of the claim. The returned map has only the rates that
+    ``mapping`` does not contain. It is empty if ``own``, the symbols and derivatives of the claim, has no derivative.
     """
     if not any(atom.is_Derivative for atom in own):
         return {}
@@ -171,9 +171,10 @@ def assignments_of(
 ) -> Iterator[dict[Expr, Expr]]:
     """Yield maps from symbols of the known formula ``target`` to the letters ``own`` of a claim: {R: r} for a radius.
 
-    Books must use such letters for these symbols. Each letter must agree with its meaning in the context, and its axes
-    with those of ``quantity``, the name for which the claim gives a formula. Every letter of the claim is used; symbols
-    may be left over only if ``is_specific``, if the formula is for one body or one sequence.
+    A symbol is mapped only to a letter that books use for it, or to a letter with this meaning in the context. The axes
+    in the letters, such as x in I_x, must agree with the axis in ``quantity``, the name for which the claim gives a
+    formula. Every letter of the claim is used. Symbols of the formula may be left over only if ``is_specific``: if the
+    formula is for one body or one sequence of angles.
     """
     own_symbols = sorted(target.free_symbols - {time}, key=str)
     if context.sequence and context.sequence in known.name:  # a formula may lack an angle that the claim has
@@ -196,7 +197,7 @@ def assignments_of(
     for chosen in islice(_distinct(choices), MOST_CHOICES):
         pairs = [(symbol.name, as_text(atom)) for symbol, atom in zip(chosen, atoms, strict=True)]
         free = [pair for pair in pairs if pair[0] not in pinned]
-        if not is_consistent([*free, *component(known.name, quantity)], known.is_placed):
+        if not is_consistent([*free, *component(known.name, quantity)], known.has_fixed_axes):
             continue
         letters = [as_text(atom) for atom in atoms]
         unpinned = {old: new for old, new in free if old != new}
@@ -205,7 +206,7 @@ def assignments_of(
 
 
 def _may_be(context: Context, name: str, symbol: str, pinned: set[str]) -> bool:
-    """Return whether a letter of a claim can stand for a symbol of a known formula, as r for R.
+    """Return whether ``name``, a letter of a claim, can stand for ``symbol`` in a known formula: r for R.
 
     ``pinned`` are the letters that the context gives to dimensions of the body: such a letter stands only for itself.
     """

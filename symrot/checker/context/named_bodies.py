@@ -42,8 +42,9 @@ HALVES = ("a", "l")
 def of_named_body(claim: Claim, named: NamedFormula, verdict: Verdict, judge: Judge) -> Verdict:
     """Return the verdict on a claim about a quantity whose name states a body or point, such as ``I_rod`` or ``I_end``.
 
-    Only a formula for this body and point is right. Return ``verdict`` unchanged for other names, and if it is "true",
-    "false" or "doubtful". ``judge`` returns the verdict on a claim in its context.
+    Only a formula for this body and point is right. ``verdict`` is the verdict without regard to the name. Return it
+    unchanged if the name states neither body nor point, and if it is "true", "false" or "doubtful". ``judge`` returns
+    the verdict on a claim in its context.
     """
     match = re.fullmatch(r"[IJ]_?(\w+)", named.name)
     words = match[1].split("_") if match else []
@@ -73,8 +74,9 @@ def _judged(claim: Claim, named: NamedFormula, verdict: Verdict, stated: Context
     """Return the verdict on a claim about a quantity such as ``I_rod``, whose name states the body or point.
 
     ``stated`` is the context that this name states, and ``judge`` returns the verdict on a claim in a context. Return
-    "recognised" if the claim is right in this context, "doubtful" if a repaired claim is. Otherwise ``verdict``, on the
-    claim without this context, counts: return "definition" if it names a known formula, else ``verdict`` itself.
+    "recognised" if the claim is right in this context, and "doubtful" if a repaired claim is right. Otherwise use
+    ``verdict``, the verdict without this context: if it recognises a known formula, this formula is for another body or
+    point than the name states, so return "definition"; else return ``verdict``.
     """
     other = judge(replace(claim, context=stated), named)
     if other.verdict in ("true", "recognised"):

@@ -43,7 +43,8 @@ def with_order(context: Context, verdict: Verdict, letters: Sequence[str]) -> Ve
 def with_sides(verdict: Verdict) -> Verdict:
     """Return the verdict, but "recognised" in place of "true" if the axes of the sides a, b, c of a body were guessed.
 
-    For instance, a claim about a box may mean by a the side along y, and not, as symrot does, the side along x.
+    For instance, the letter a in a claim about a box may mean the side along y; in symrot's formulas it is the side
+    along x.
     """
     readings = [known for known in verdict.recognised_as if not any(re.fullmatch(SIDES, old) for old in known.mapping)]
     # known formulas call the sides, or semi-axes, along x, y and z a, b and c: without renaming, nothing is guessed
@@ -54,9 +55,10 @@ def with_sides(verdict: Verdict) -> Verdict:
 
 
 def with_tangent(context: Context, verdict: Verdict) -> Verdict:
-    """Return the verdict, but "recognised" in place of "true" if "about a tangent" was read as a line normal to a disk.
+    """Return the verdict, but "recognised" in place of "true" if the tangent of a disk was read as normal to the disk.
 
-    Most authors mean a tangent in the plane of the disk or ring.
+    With the words "about a tangent" in the context, the claim then equals the formula for the axis through a point of
+    the rim that is perpendicular to the plane of the disk or ring. Most authors mean a tangent in this plane.
     """
     places = {context.place, *(meaning.place for meaning in context.meanings)}
     normal = all(known.name.endswith("rim, z axis") for known in verdict.recognised_as)
@@ -83,15 +85,15 @@ def with_axes(context: Context, verdict: Verdict) -> Verdict:
 
 
 def _is_exchanged(known: Identification) -> bool:
-    """Return whether the claim writes phi for the psi of the ``known`` formula, or psi for its phi."""
+    """Return whether the claim writes phi where the ``known`` formula has psi, or psi where the formula has phi."""
     return any({old, plain(new)} in EXCHANGED for old, new in known.mapping.items())
 
 
 def with_guesses(context: Context, verdict: Verdict, stated: str) -> Verdict:
     """Return a verdict with the recognised formula that needs the fewest guesses first, and with a note on its guesses.
 
-    The note is for instance "guessed, not stated: solid". A guess is a word in the formula's name that neither the
-    context nor ``stated``, the words implied by the name of the claim's quantity, state.
+    The note is for instance "guessed, not stated: solid". A guess is a word in the formula's name that is neither in
+    the context nor in ``stated``. ``stated`` are the words that the name of the claim's quantity implies.
     """
     readings = sorted(verdict.recognised_as, key=lambda known: len(guesses(context, known.name, stated)))
     verdict, likeliest = replace(verdict, recognised_as=tuple(readings)), readings[0]

@@ -1,7 +1,7 @@
 """The quantities that words such as "moment of inertia about the centre" mean, with their synonyms.
 
-Each quantity tells which known formulas are for it: by phrases in their names, and by symbols, such as E_k for the
-kinetic energy.
+Each quantity has phrases and symbols by which the known formulas for it are found: the name of a formula for the
+kinetic energy contains the phrase "kinetic energy", and the formula has the symbol E_k for it.
 """
 
 import re
@@ -26,7 +26,7 @@ class Quantity:
     synonyms : tuple of str
         Other phrases for it.
     formulas : tuple of str
-        Phrases of which a formula for the quantity has at least one in its name.
+        Phrases: the name of every known formula for the quantity contains one of them. Empty if any name fits.
     symbols : str
         A pattern of the symbols that derived formulas use for it; empty if they use none.
     unit : str
@@ -238,10 +238,12 @@ LINES: dict[str, tuple[tuple[str, ...], dict[str, tuple[str, str]]]] = {
         ("base", "base line", "base edge"), {"a plate": (CORNER, "xy"), "a triangular plate": (CORNER, "x")}
     ),
 }  # fmt: skip
-"""Maps the title of a line that serves as an axis, such as "about a diameter", to a pair: words that users write for
-the line after "about", and a dictionary of the bodies with such a line. This dictionary maps a body, such as "a disk",
-to a pair (point, axes) that the names of derived formulas for the line contain. A diameter of a disk goes through the
-centre of mass along x or y, which gives (CENTRE, "xy")."""
+"""Lines that serve as axes: {title: (phrases, {body: (point, axes)})}.
+
+The title is for instance "about a diameter". The phrases are words that users write for the line after "about". The
+inner dictionary has the bodies with such a line. A diameter of a disk goes through the centre of mass along x or y,
+which gives {"a disk": (CENTRE, "xy")}. A derived formula is for the line if its name states this body and point, and
+one of these axes or none."""
 
 UNUSED = frozenset({
     "a", "an", "the", "of", "its", "their", "any", "some", "this", "that", "is", "are", "and", "in", "by",
@@ -306,8 +308,10 @@ def place_of_words(words: str, formulas: Collection[str] = ()) -> tuple[str, str
 
 
 _BEFORE_PLACE = r"(through|about|hung at|hung from|at)(?: (?:any|some|one|either)(?: of)?(?! axis))?"
-"""Pattern of the words in front of a point or line, such as "about one of" in "about one of its ends". In "about one
-axis" only "about" matches: these words mean the fixed axis of a body, and "about axis" its axis of symmetry."""
+"""Pattern of the words in front of a point or line, such as "about one of" in "about one of its ends".
+
+In "about one axis" only "about" matches, which leaves "one axis", a phrase for the fixed axis of a body. If "about one"
+matched, "axis" would be left, a phrase for the axis of symmetry."""
 
 _END_OF_PLACE = r"(?![\w-])(?! (?:of|in|through|perpendicular|normal|parallel|along|at|inclined|tilted)\b)"
 

@@ -9,7 +9,7 @@ from dataclasses import replace
 from difflib import get_close_matches
 
 from symrot.checker.claim.reader import read_expression
-from symrot.checker.context.bodies import BODIES, Body, body_of_words
+from symrot.checker.context.bodies import BODIES, Body, body_of_words, with_article
 from symrot.checker.context.context import Context, Meaning, name_of
 from symrot.checker.context.quantities import (
     AMBIGUOUS,
@@ -290,13 +290,13 @@ def _check_consistency(context: Context, prefix: str) -> None:
         _check_unit(meaning, prefix)
         if meaning.frame and context.frame and meaning.frame != context.frame:
             raise InputError(
-                f"{prefix}frame: expected the {meaning.frame} frame, which the meaning of {meaning.written[0]} states, "
-                f"got {context.frame!r}"
+                f"{prefix}frame: expected the {meaning.frame} frame, which where states for {meaning.written[0]}, got "
+                f"{context.frame!r} (state the same frame in both)"
             )
         if meaning.body and context.body and meaning.body.kind != context.body.kind:
             raise InputError(
-                f"{prefix}body: expected a {meaning.body.kind.title}, which the meaning of {meaning.written[0]} "
-                f"states, got {context.body.kind.title!r}"
+                f"{prefix}body: expected {with_article(meaning.body.kind.title)}, the body that where states for "
+                f"{meaning.written[0]}, got {context.body.kind.title!r} (state the same body in both)"
             )
 
 

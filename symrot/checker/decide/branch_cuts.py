@@ -21,8 +21,8 @@ __all__ = ["BranchCut", "branch_cuts"]
 class BranchCut:
     """The branch cut of ``atan2(y, x)``, where y = 0 and x < 0.
 
-    ``zero`` is a formula that is zero where y is, such as y without constant factors, and ``negative`` is x.
-    ``values`` maps each atan2 whose first argument vanishes on the cut to its value there.
+    ``zero`` is a formula that is zero where y is zero, such as y without its constant factor; ``negative`` is x.
+    ``values`` maps each atan2 whose first argument vanishes on the cut to the value of this atan2 on the cut.
     """
 
     zero: Expr
@@ -31,7 +31,11 @@ class BranchCut:
 
     @property
     def solutions(self) -> list[dict[Expr, Expr]]:
-        """Solutions of ``zero = 0`` for one of its symbols, each as {symbol: value}; empty if none is found easily."""
+        """Real solutions of the equation that sets the formula ``zero`` to 0, each as {symbol: value} for one symbol.
+
+        Only two kinds of equations are solved: those in which a symbol has a number as coefficient, such as x in
+        ``2*x + y**2 == 0``, and those of degree 2 in their only symbol. For other equations the list is empty.
+        """
         for symbol in sorted(self.zero.free_symbols, key=str):
             slope, rest = self.zero.diff(symbol), self.zero.subs(symbol, 0)
             if slope.is_number:
@@ -48,8 +52,10 @@ class BranchCut:
 
 
 def branch_cuts(formulas: Sequence[Expr]) -> Iterator[BranchCut]:
-    """Yield the branch cuts of the functions atan2 in formulas, each once; only the cuts on which points are easily
-    found.
+    """Yield the branch cuts of the functions atan2 in formulas, each once.
+
+    A cut of ``atan2(y, x)`` is left out if y contains other functions than sine and cosine, since points with y = 0 are
+    then hard to find, and if x is never negative.
     """
     jumps = sorted({node for formula in formulas for node in formula.atoms(atan2)}, key=str)
     known = set()

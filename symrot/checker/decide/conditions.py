@@ -153,8 +153,9 @@ def _no_products(
 ) -> list[Requirement]:
     """Return [condition] if a claim is true where its products of inertia are zero, as a book may assume; otherwise [].
 
-    A book that assumes principal axes leaves these products out on one side: in each pair of ``sides``, the left or the
-    right side must contain none of the products that the condition sets to zero.
+    ``numerators`` are the numerators of left minus right, one for each entry whose sides differ, and ``sides`` are the
+    left and right sides of these entries. A book that assumes principal axes writes no products of inertia: so one side
+    of each entry must contain none of the products that the condition sets to zero.
     """
     products = [(leaf, n) for leaf, n in ring.symbols.items() if _matches(PRODUCT_OF_INERTIA, leaf)]
     if not products or not all(any(mono[n] for _, n in products) for poly in numerators for mono in poly):
@@ -173,11 +174,10 @@ def _matches(pattern: re.Pattern[str], leaf: Expr) -> bool:
 
 
 def branch_requirements(ring: FormulaRing, numerators: Sequence[PolyElement]) -> list[Requirement] | None:
-    """Return a list with the one condition under which a claim with square roots is true: ``x >= 0`` for
-    ``sqrt(x**2) == x``.
+    """Return [condition] for a claim with square roots that is true under this condition on signs.
 
-    ``numerators`` are those of the differences between left and right sides. Return [] if the condition always holds,
-    and None if no condition is known.
+    The condition is ``x >= 0`` for ``sqrt(x**2) == x``. ``numerators`` are the numerators of left minus right, one for
+    each entry whose sides differ. Return [] if the condition always holds, and None if no condition is known.
     """
     for root, place in ring.roots.items():
         if root.index != 2 or root.expression.is_number:

@@ -40,7 +40,7 @@ CANDIDATES = 8
 text becomes the counterexample, a rational one if there is any."""
 
 OTHER_VALUES = tuple(Rational(n, d) for n, d in ((1, 1), (2, 1), (1, 2), (-1, 1), (3, 1), (-1, 3), (5, 7), (-3, 2)))
-"""Values for symbols that occur in no hypothesis: a random point that obeys the hypotheses gives them no value."""
+"""Values for symbols that occur in no hypothesis. A random point that obeys the hypotheses has no values for them."""
 
 
 NOWHERE = "there are no real values of the letters for which both sides are real numbers"
@@ -150,21 +150,21 @@ class Hypotheses:
         # the points where no divisor vanishes are dense; no other need than x != 0 may restrict them
         return is_dense(self.ring) and all(need.sign == "!= 0" for need in needs)
 
-    def _true_number(self, need: Need, is_of_sides: bool) -> bool:
+    def _true_number(self, need: Need, is_of_claim: bool) -> bool:
         """Return whether a condition without symbols, such as ``2 - 1 > 0``, is proven; False if it may fail.
 
         Raises
         ------
         InputError
-            If the condition is proven to be false, and ``is_of_sides`` says that the claim's sides or hypotheses are
-            real numbers only under this condition.
+            If the condition is proven to be false and ``is_of_claim``: if the sides and hypotheses of the claim, as
+            they are written, are real numbers only under this condition.
         """
         interval = enclosure(need.formula)
         if interval is None:
             return False
         zero = 0 in interval and is_zero(need.formula)
         fails = (interval.b < 0 and need.sign != "!= 0") or (zero and need.sign != ">= 0")
-        if fails and is_of_sides:
+        if fails and is_of_claim:
             raise InputError(f"the sides are not real numbers: {_need_text(need)} does not hold")
         return not fails and (zero or holds(need, {}))
 
@@ -254,7 +254,7 @@ class Hypotheses:
     def near_witness(
         self, ring: FormulaRing, left: Expr, right: Expr, entry: tuple[int, int] | None
     ) -> Counterexample | None:
-        """Return a counterexample among the first few points that obey the hypotheses, or None.
+        """Return a counterexample to ``left == right`` among the first few points that obey the hypotheses, or None.
 
         The arguments are those of :meth:`witness`.
         """
@@ -263,7 +263,19 @@ class Hypotheses:
     def witness(
         self, ring: FormulaRing, left: Expr, right: Expr, entry: tuple[int, int] | None, attempts: int = ATTEMPTS
     ) -> Counterexample | None:
-        """Return a counterexample, an exact point that obeys the hypotheses and where the sides differ, or None."""
+        """Return a counterexample to ``left == right``: an exact point that obeys the hypotheses, or None.
+
+        Parameters
+        ----------
+        ring : FormulaRing
+            The ring in which left - right is computed.
+        left, right : Expr
+            The sides of a claim, or one entry of each side of a matrix equation.
+        entry : (int, int) or None
+            The row and column of this entry; None for a claim about scalars.
+        attempts : int
+            The number of attempts to find a point.
+        """
         if not self.present or not self.constraints.real or not self.constraints.complete:
             return None
         residual = ring.difference(left, right).numerator.set_ring(self.constraints.ring)
@@ -278,7 +290,7 @@ class Hypotheses:
                 break
         if not candidates:
             return None
-        # ``entry`` is (row, column) if the sides are an entry of a matrix
+
         return self._counterexample(min(candidates, key=lambda point: point.size), left, right, entry)
 
     def _counterexample(
@@ -304,8 +316,9 @@ class Hypotheses:
     def _by_enclosures(
         self, left: Expr, right: Expr, entry: tuple[int, int] | None, attempts: int
     ) -> Counterexample | None:
-        """Return a point where the intervals that enclose the two sides are disjoint, so that the sides differ; or
-        None.
+        """Return a counterexample: a point where the intervals that enclose the two sides are disjoint; or None.
+
+        The arguments are those of :meth:`witness`.
         """
         ring, constraints = self.ring, self.constraints
         known = {*ring.symbols.values(), *ring.roots.values()}

@@ -26,7 +26,8 @@ __all__ = ["Infeasibility", "infeasibility_proof", "vanishes_on"]
 MOST_CASES = 40
 """Largest number of cases of a proof; a case counts again after each Groebner basis that is computed for it."""
 MOST_ROUNDS = 6
-"""Largest number of Groebner bases that are computed one after the other for one case."""
+"""Largest number of Groebner bases that are computed one after the other on the way to one case. In each case of a
+proof, one factor of a vanishing product is zero."""
 
 MOST_PRODUCTS = 150_000
 """The largest number of products of terms in all Groebner bases of one proof."""
@@ -202,7 +203,11 @@ class _Prover:
         return []
 
     def _completed(self, rest: PolyElement) -> list[tuple[Any, PolyElement]]:
-        """Return pairs (d, l), as :meth:`squares` does, for a polynomial but not for its negative."""
+        """Return pairs (d, l) such that the polynomial ``rest`` of degree 2 is the sum of all ``d*l^2``; [] if none.
+
+        d is positive, and l is linear or 1. :meth:`squares` also tries the negative of a polynomial, this method does
+        not.
+        """
         squares = []
         for place in sorted(occurring([rest])):
             x = self.ring.gens[place]

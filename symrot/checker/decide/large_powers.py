@@ -30,8 +30,8 @@ LARGEST_EXPANDED = 64
 """A power is replaced by a letter if its exponent times the degree of its base is larger than this."""
 
 HIGHEST_OF_BASE = 4
-"""The largest n for which bases of large powers are compared: does one base equal another base to the power n, up to
-the sign? For instance, ``1 - cos(x)**2`` equals sin(x) to the power 2."""
+"""The largest n for which the bases of large powers are compared: the comparison tests whether one base is the n-th
+power of another base, up to the sign. For instance, ``1 - cos(x)**2`` is the second power of sin(x)."""
 
 MOST_POINTS = 500
 MOST_BASES = 12

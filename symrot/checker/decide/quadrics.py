@@ -39,12 +39,14 @@ def rational_square_root(value: Any) -> Any:
 def point_of_quadric(poly: PolyElement, places: Sequence[int], source: Random) -> dict[int, Any] | None:
     """Return a random rational point at which a polynomial of degree 2 vanishes; None if the search fails.
 
+    The point is a map from the index of each unknown to its value.
+
     Parameters
     ----------
     poly : PolyElement
         A polynomial of degree 2 over the rationals.
     places : sequence of int
-        The numbers of the unknowns that occur in it, at least two.
+        The indices of the unknowns that occur in it, at least two.
     source : Random
     """
     base = _simple_point(poly, places, source)
@@ -61,7 +63,11 @@ def point_of_quadric(poly: PolyElement, places: Sequence[int], source: Random) -
 
 
 def _simple_point(poly: PolyElement, places: Sequence[int], source: Random) -> dict[int, Any] | None:
-    """Return a rational zero of a polynomial of degree 2, with few digits in all coordinates but one, or None."""
+    """Return a rational point at which a polynomial of degree 2 vanishes, as {index: value}; None if none is found.
+
+    ``places`` are the indices of the unknowns. All of them but one get values from SIMPLE, which have few digits; the
+    value of the last one solves the equation.
+    """
     for attempt in range(TRIES):
         last = source.choice(places)
         pool = SIMPLE[: 3 + attempt // 4]

@@ -270,9 +270,12 @@ class _Drawing:
         return False
 
     def guess(self) -> bool:
-        """Set one unknown to a simple random number, and return True."""
+        """Set one unknown of a random equation to a simple random number, and return True.
+
+        Every method in ``_ORDERS`` returns whether it could be applied; this one always can.
+        """
         poly = self.source.choice(self.zeros)
-        # an unknown of a random equation
+
         place = self.source.choice(sorted(occurring([poly])))
         self.put({place: self.field.convert(self.drawn(place), QQ)})
         return True

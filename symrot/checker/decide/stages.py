@@ -72,7 +72,7 @@ class ClaimCase(Case):
 
     @property
     def lacks_evidence(self) -> bool:
-        """Whether no counterexample is known, and the search for one must go on."""
+        """Whether the search for a counterexample must go on."""
         # known conditions on the signs of roots end the search; under hypotheses it goes on, since they ignore these
         return self.counterexample is None and (bool(self.ring.hypotheses) or self.branches is None)
 
@@ -145,9 +145,11 @@ def domain_of_text(case: ClaimCase) -> None:
 
 
 def nearby_witness(case: ClaimCase) -> None:
-    """Search rational points and a few points that obey the hypotheses for a counterexample; store it in ``case``.
+    """Search for a counterexample among simple points, and store it in ``case``.
 
-    Without hypotheses, points in closed form, such as pi/6, take the place of the latter. Set ``case.numerators`` too.
+    The search tries rational points, then a few points that obey the hypotheses. For a claim without hypotheses, it
+    tries rational points, then points in closed form, such as pi/6. The numerators of the unproven entries are stored
+    in ``case.numerators``.
     """
     ring, hypotheses = case.ring, case.hypotheses
     case.numerators = [ring.reduce(case.residuals[place].numerator) for place in case.unproven]
@@ -239,8 +241,9 @@ def _needs(case: ClaimCase) -> list[Need]:
 
 
 def _independent(nonzero: Mapping[str, Expr]) -> dict[str, Expr]:
-    """Return ``nonzero``, a map of texts to formulas that must not be zero, without those implied by others: x**2
-    beside x.
+    """Return ``nonzero`` without the formulas that are never zero and those that another formula implies.
+
+    ``nonzero`` maps texts to formulas that must not be zero. If it has x, the formula x**2 is left out.
     """
     remaining = {}
     for text, form in nonzero.items():
@@ -297,10 +300,10 @@ def _is_long(requirement: Requirement) -> bool:
 def _within_range(
     ring: FormulaRing, numerator: PolyElement
 ) -> tuple[list[Requirement], tuple[FormulaRing, ...]] | None:
-    """Return ([condition], rings): a range of values in which a claim with inverse functions is true, such as
-    ``-pi/2 <= asin(x) + asin(y) <= pi/2``, and the rings in which this is proven.
+    """Return ([condition], rings) for a claim with inverse functions that is true in a range of values.
 
-    The list is empty if the claim is true without a condition. Return None if no such range is known.
+    The condition states the range, such as ``-pi/2 <= asin(x) + asin(y) <= pi/2``; the proof uses the rings. The list
+    is empty if the claim is true without a condition. Return None if no such range is known.
     """
     within = principal(ring, numerator)
     if within is None:

@@ -1,7 +1,8 @@
 """Claims for the rate of a rotation matrix, ``R' = [ω]× R``, tested on a rotation.
 
-The claim was recognised by its right side alone. On the right, R may stand for the transpose of the matrix that R is on
-the left. A test with a rotation in place of R shows whether both sides mean the same matrix.
+The claim was recognised by its right side alone. It may still be wrong: R may map body components to space components
+on the left side, and space components to body components on the right side. A test with a rotation in place of R shows
+whether both sides mean the same matrix.
 """
 
 import re

@@ -51,7 +51,8 @@ BRACED = ("\\underbrace", "\\overbrace")
 ``\\underbrace{a + b}_{sum}``, is a remark on the formula and is left out."""
 
 LONGEST_NUMBER = 8
-"""The number of tokens after ``\\quad`` that may hold an equation number such as ``(5.12)`` and the token after it."""
+"""The number of tokens after ``\\quad`` in which an equation number such as ``(5.12)`` is searched. The token after the
+number must be one of these tokens too."""
 
 SPELLED = {
     **{name: f"\\{name}" for name in ("sin", "cos", "tan", "cot", "sec", "csc", "sinh", "cosh", "tanh", "exp", "ln",

@@ -191,10 +191,12 @@ class NamesPart(SumsPart):
         return self.at("(") and self.peek(1).text == "t" and self.peek(2).text == ")"
 
     def derivative(self, node: Node, times: int, item: tree.Node) -> Node:
-        """Return the time derivative of a formula, of the order ``times``, and make an undeclared name a function of
-        time; raise InputError if all names must be declared.
+        """Return the time derivative of the formula ``node``, of the order ``times``.
 
-        If the claim declares a symbol for the rate of x, such as dx, return this symbol for the first derivative.
+        If the claim declares a symbol for the rate of x, such as dx, return this symbol for the first derivative of x.
+        A name becomes a function of time unless the claim declares it as a function or matrix or defines it. If the
+        claim must declare all its names, raise InputError for such a name instead; the message quotes the text at
+        ``item``.
         """
         if node.kind == "name" and node.value not in (*self.names.functions, *self.names.matrices, *self.names.others):
             name = str(node.value)
@@ -208,9 +210,10 @@ class NamesPart(SumsPart):
         return differentiated(node, TIME, times)
 
     def take_time_call(self, name: str) -> None:
-        """Skip ``(t)`` after the function of time ``name``; raise InputError for ``(x)`` or ``(0)`` after a name.
+        """Skip ``(t)`` after a ``name`` that may be a function of time, and record that this name is one.
 
-        Only ``Omega(omega)``, a matrix, may have such brackets.
+        Raise InputError for ``(x)`` or ``(0)`` after the name. The brackets of ``Omega(omega)``, the matrix in
+        ``q' = Ω(ω) q/2``, are accepted and not skipped.
         """
         if self.called_with_time() and (
             name in self.names.functions or (self.names.implied and name not in self.names)
@@ -218,7 +221,7 @@ class NamesPart(SumsPart):
             self.index += 3
             self.timed.add(name)
         is_of_rates = name == "Omega" and self.at("(") and self.peek(1).text == "\\omega"
-        if not is_of_rates:  # the matrix Ω(ω) in q' = Ω(ω) q/2
+        if not is_of_rates:
             self.refuse_call()
 
     def marked(self, mark: tree.Accent | tree.Font) -> Node:

@@ -51,8 +51,8 @@ def shorthands(pieces: Sequence[Token], declared: Collection[str] = ()) -> dict[
     pieces : sequence of Token
         The tokens of the text.
     declared : collection of str
-        Names that the claim declares. If c, s or v, or one with a subscript such as c_1, is among them, the text has no
-        short forms in small letters; likewise C, S and V exclude those in capital letters.
+        Names that the claim declares. If c, s or v is one of them, with or without a subscript, as in c_1, the text has
+        no short forms in small letters. Likewise, the declared names C, S and V exclude short forms in capital letters.
 
     Examples
     --------
@@ -137,8 +137,8 @@ def _numbered(pieces: Sequence[Token], numbered: Mapping[int, tuple[str, str]]) 
 def _has_rate(pieces: Sequence[Token], digits: Collection[str]) -> bool:
     r"""Return whether a text has the rate of a numbered angle, such as ``\dot\theta_1``, and all numbers are 1, 2 or 3.
 
-    All numbers are that of the angle and ``digits``, the numbers of possible short forms such as ``c_2`` for
-    cos(theta_2).
+    The numbers are the 1 of this angle and ``digits``, the numbers of possible short forms such as ``c_2``, which would
+    mean cos(theta_2).
     """
     for place, piece in enumerate(pieces[:-3]):
         grouped = pieces[place + 1].text == "{"
@@ -153,7 +153,7 @@ def _has_rate(pieces: Sequence[Token], digits: Collection[str]) -> bool:
 
 
 def without_definitions(hypotheses: Sequence[str], claim: str) -> list[str]:
-    r"""Return hypotheses without those that only define a short form of the claim, as ``c\alpha = \cos\alpha`` does.
+    r"""Return the hypotheses that do more than define a short form of the claim: not ``c\alpha = \cos\alpha``.
 
     Examples
     --------

@@ -25,9 +25,9 @@ value is simply its power (PRIME + 1)/4.
 DRAWS = tuple((pow(3, 101 + 2 * n, PRIME), pow(3, 102 + 2 * n, PRIME)) for n in range(48))
 """Pairs (value of one symbol, value of all other symbols), tried in turn until the formula is defined."""
 MOST_UNDEFINED = 3
-"""Number of pairs in DRAWS with which one formula is evaluated at most. With each pair, all symbols but one have the
-same value; so a formula that is undefined for all these pairs, such as x/(A - B), is probably undefined wherever two
-symbols are equal."""
+"""The largest number of pairs in DRAWS with which one formula is evaluated. Each pair gives its first number to one
+symbol and its second number to all other symbols. So a formula that is undefined for all these pairs, such as
+x/(A - B), is probably undefined wherever two symbols are equal."""
 PARTS = 4
 """The number of parts into which an angle x is divided: cos(x) and sin(x) are computed from cos(x/4) and sin(x/4), so
 that cosines and sines of x/2 and x/4 have values too."""
@@ -163,10 +163,11 @@ class Fingerprint:
     idle: tuple[Expr, ...] = ()  # atoms in the formula that do not change its value
 
     def rows(self, order: Sequence[int]) -> list[Values]:
-        """Return the signatures of all atoms, scaled so that the formulas x and 2*x have the same signatures.
+        """Return the signature of each atom, scaled so that the formulas x and 2*x have the same signatures.
 
-        ``order`` are indices of the formula's entries: each signature has its values in this order. All values are
-        divided by one number, the sum of all atoms' values for the first entry with a nonzero sum.
+        An atom is a symbol, function or derivative in the formula. Its signature has one value for each entry of the
+        formula; ``order`` are the indices of these entries in the order of the values. All values are divided by one
+        number: the sum of all atoms' values for the first entry with a nonzero sum.
         """
         total = [sum(column) % PRIME for column in zip(*self.signatures, strict=True)]
         # the first entry whose values have a nonzero sum
@@ -215,10 +216,10 @@ def fingerprint(entries: Sequence[Expr]) -> Fingerprint:
 
 
 def in_lowest_terms(formula: Expr) -> bool:
-    """Return whether a product is in lowest terms: not so ``(a**2 - b**2)/(a - b)``, whose numerator a - b divides.
+    """Return whether a product is in lowest terms.
 
-    False also if this test cannot tell: for a divisor that is linear in no atom, and for a formula without a value
-    modulo ``PRIME``.
+    The product ``(a**2 - b**2)/(a - b)`` is not, because its divisor a - b divides its numerator. Return False also if
+    this test cannot tell: for a divisor that is linear in no atom, and for a formula without a value modulo ``PRIME``.
     """
     # quicker than cancel: a divisor that is linear in x divides the rest only if the rest is 0 at its root
     atoms = sorted(atoms_of([formula]), key=str)

@@ -229,8 +229,9 @@ def _changes(match: Identification) -> tuple[int, int, int]:
 def _views(shape: tuple[int, int] | None, count: int) -> Iterator[View]:
     """Yield the arrangements of ``count`` entries in which a formula is searched.
 
-    These are the entries as they are, and for a vector or matrix transposed. With four rows or columns, as for
-    quaternions, both are also searched with the scalar part stored last instead of first.
+    The first arrangement is the formula itself, the second its transpose, if it is a vector or matrix. A formula with
+    four rows or columns may belong to quaternions: then each of the two arrangements is also yielded in the form that
+    it has if the scalar part of a quaternion is stored last.
     """
     plain = tuple(range(count))
     yield View("", shape, plain)
@@ -315,7 +316,7 @@ def _matched(
             continue
         ordered_by_factor = "quaternion product" in known.name  # in a1*a2 - b1*b2 the numbers distinguish the factors
         placed = [*pairs, *component(known.name, quantity or "")]
-        if quantity is not None and not ordered_by_factor and not is_consistent(placed, known.is_placed):
+        if quantity is not None and not ordered_by_factor and not is_consistent(placed, known.has_fixed_axes):
             continue
         factor = _factor(theirs, ordered, pairing, own.idle, SCALES if known.scaled else FACTORS)
         if factor is None:
@@ -388,7 +389,9 @@ def _factor(
 ) -> Rational | None:
     """Return the first number k in ``factors`` with own = k * known for all entries at a test point.
 
-    Return None if no factor fits, or if none of the test points gives both formulas a value.
+    A test point gives each symbol of the known formula a number, and the paired symbol of the claim the same number.
+    The symbols in ``idle``, which have no partner, get another number. Return None if no factor fits, or if none of the
+    test points gives both formulas a value.
     """
     for draw in range(MOST_DRAWS):
         point = {mine: pow(7 + 2 * draw, 40 + n * n, PRIME) for n, mine in enumerate(pairing)}

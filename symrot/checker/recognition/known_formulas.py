@@ -33,14 +33,12 @@ __all__ = ["FILE", "Known", "by_fingerprint", "derived", "ending_of", "page", "r
 FILE = Path(__file__).with_name("known_formulas.toml")
 
 LONGEST = 6000
-"""The largest number of characters in the text of a formula in ``known_formulas.toml``.
-
-For sides of steps in derivations, LONGEST_DERIVED is the limit.
-"""
+"""The largest number of characters in the text of a formula in ``known_formulas.toml`` that has a name of its own, such
+as "moment of inertia of a disk, x axis"."""
 
 LONGEST_DERIVED = 900
-"""The largest number of characters in the text of a formula in ``known_formulas.toml`` that is known only as one side
-of an equation in a step of a derivation, and so is named after the step."""
+"""The largest number of characters in the text of a formula in ``known_formulas.toml`` that has no name of its own. It
+is one side of an equation in a step of a derivation, and is named after this step."""
 
 
 @dataclass(frozen=True)
@@ -55,8 +53,11 @@ class Known:
     is_relation: bool = False  # the left side of an equation minus the right side
 
     @property
-    def is_placed(self) -> bool:
-        """Whether the formula is for one axis or matrix entry only, such as roll: its axes must not be exchanged."""
+    def has_fixed_axes(self) -> bool:
+        """Whether the axes 1, 2 and 3 in the formula must not be permuted.
+
+        This holds for the angles yaw, pitch and roll, each of which has its own axis, and for an entry of a matrix.
+        """
         return self.name.startswith(("yaw", "pitch", "roll", "entry"))
 
     @property
@@ -72,7 +73,11 @@ def _formulas_of(group: Callable[[], Iterator[Named]]) -> tuple[Named, ...]:
 
 
 def stated() -> Iterator[Named]:
-    """Yield the formulas of kinematics, inertia and dynamics in a fixed order, then the components of the vectors."""
+    """Yield the formulas of kinematics, inertia and dynamics in a fixed order, then the components of their columns.
+
+    The columns are the formulas for a vector of three components or a quaternion. A component with fewer than
+    LEAST_OF_COMPONENT symbols is left out.
+    """
     columns: list[Named] = []
     for group in (
         axes,

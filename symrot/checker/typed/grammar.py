@@ -20,7 +20,8 @@ __all__ = ["Parser"]
 QUATERNION_SIGNS = ("⊗", "∘")
 TIMES = ("*", "/", "·", "×")
 BROKEN_EXPONENTS = frozenset([*(("1", n) for n in "23456789"), *((n, "2") for n in "13579"), ("2", "3"), ("4", "3")])
-"""Pairs of numbers, as in ``x^3/2``, that may be a fraction as exponent, x^(3/2); r^2/5 is always (r^2)/5."""
+"""Pairs of numbers that may be a fraction as exponent: ("3", "2"), since ``x^3/2`` may mean x^(3/2). The pair ("2",
+"5") is none of them: ``r^2/5`` is always (r^2)/5."""
 
 
 def _is_matrix_name(node: Node) -> bool:

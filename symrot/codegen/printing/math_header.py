@@ -146,24 +146,26 @@ def _functions(real: Real) -> list[str]:
         "}",
         "",
     ]
-    for name, relation, comparison in (
-        ("less", "<", f"symrot_bits{s}(a - b) >> {top + 1}"),
-        ("same", "==", f"(symrot_bits{s}(fabs{s}(a - b)) - 1) >> {top + 1}"),
+    for name, relation, numbers, comparison in (
+        ("less", "<", "finite numbers, a not -0.0", f"symrot_bits{s}(a - b) >> {top + 1}"),
+        ("same", "==", "finite numbers", f"(symrot_bits{s}(fabs{s}(a - b)) - 1) >> {top + 1}"),
     ):
         lines += [
-            f"/* 1 where a {relation} b, else 0; for finite numbers: by bits, since not all vectors compare */",
+            f"/* 1 where a {relation} b, else 0; for {numbers}: by bits, since not all vectors compare */",
             f"SYMROT_INLINE {bits} symrot_{name}{s}({kind} a, {kind} b) {{ return {comparison}; }}",
             "",
         ]
+    # -0.0 - 0.0 is -0.0, whose sign bit is that of a negative number; -0.0 + 0.0 is 0.0
+    less = f"less{s}(a + {real.literal(Fraction(0))}, b)"
     for name, relation, chosen in (
-        ("select_lt", "<", "less{s}(a, b), x, y"), ("select_eq", "==", "same{s}(a, b), x, y"),
-        ("choose_ge", ">=", "less{s}(a, b), y, x"),
+        ("select_lt", "<", f"{less}, x, y"), ("select_eq", "==", f"same{s}(a, b), x, y"),
+        ("choose_ge", ">=", f"{less}, y, x"),
     ):  # fmt: skip
         lines += [
             f"/* a {relation} b ? x : y, without a branch */",
             f"SYMROT_INLINE {kind} symrot_{name}{s}({kind} a, {kind} b, {kind} x, {kind} y)",
             "{",
-            f"    return symrot_chosen{s}(symrot_{chosen.format(s=s)});",
+            f"    return symrot_chosen{s}(symrot_{chosen});",
             "}",
             "",
         ]

@@ -120,13 +120,15 @@ def _inline_display(latex: str) -> str:
 
 
 def _data(exercises: Sequence[Exercise]) -> dict[str, Any]:
-    """Return the data with which the page grades numbers: answer, unit and typical wrong numbers of each question,
-    and the factors and dimensions of all units.
+    """Return the data with which the page grades numbers: answer, unit, name, given quantities and typical wrong
+    numbers of each question, and the factors and dimensions of all units.
     """
     questions = {
         f"{number}{question.key}": {
             "value": question.decimal,
             "unit": question.unit,
+            "name": question.name,
+            "given": [*question.symbols],
             **_unit_facts(question.unit),
             # each with a hint at the mistake
             "slips": [

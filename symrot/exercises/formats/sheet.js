@@ -10,8 +10,8 @@ const UNIT = new RegExp(`(/?)\\s*(${NAMES.join("|")})(?![A-Za-z])(?:\\^?\\(?(-?\
  * with `rotations` one rotation per second.
  */
 function unitOf(text, rotations) {
-  let plain = text.trim().replace(/\*\*/g, "^").replace(/[*·⋅()]/g, " ").replace(/²/g, "^2").replace(/³/g, "^3");
-  plain = plain.replace(/⁻¹/g, "^-1").replace(/⁻²/g, "^-2").replace(/^1\s*\//, "/").replace(/°/g, "deg");
+  let plain = text.trim().replace(/\*\*/g, "^").replace(/[*·⋅()]/g, " ");
+  plain = plain.replace(/^1\s*\//, "/").replace(/°/g, "deg");
   const divided = /\/\(/.test(text);
   let place = 0, factor = 1, below = false;
   const dimension = {};
@@ -75,7 +75,7 @@ function arithmetic(text) {
   return Number.isFinite(value) ? [value, rest] : null;
 }
 
-const near = (a, b) => Math.abs(a - b) <= TOLERANCE * Math.abs(b) || Math.abs(a - b) < 1e-12;
+const near = (a, b) => Math.abs(a - b) <= TOLERANCE * (1 + 1e-9) * Math.abs(b) || Math.abs(a - b) < 1e-12;
 const same = (a, b) => JSON.stringify(Object.entries(a).sort()) === JSON.stringify(Object.entries(b).sort());
 
 /** Return half a unit of the last digit of a decimal such as "0.25", and the number of its digits; 0 for "1/4". */
@@ -86,9 +86,36 @@ function rounding(text, value) {
   return [0.5 * 10 ** (Math.floor(Math.log10(Math.abs(value))) - digits + 1), digits];
 }
 
-/** Return [class, sentence] on an answer. */
-function grade(text, question) {
-  const typed = text.replace(/^.*=/, "").trim().replace(/[.,;]+$/, "").replace(/²/g, "^2").replace(/³/g, "^3");
+/** Return a text with powers such as s⁻² written as s^-2. */
+function withoutSuperscripts(text) {
+  const plain = (sign) => "+-0123456789"["⁺⁻⁰¹²³⁴⁵⁶⁷⁸⁹".indexOf(sign)];
+  return text.replace(/[⁺⁻]?[⁰¹²³⁴-⁹]+/g, (power) => `^${[...power].map(plain).join("")}`);
+}
+
+const MULTIPLE = /^([-−]?)\s*((?:\d[\d.]*)?\s*[*·⋅/]?)\s*(\p{L}[\p{L}\p{M}\p{N}_'{}]*)\s*([*·⋅/]\s*\d[\d.]*)?((?:(?:\^|\*\*)\s*\d+)?)$/u;
+
+/**
+ * Return whether the text in front of "=" is a multiple or a power of one name, such as 2 I or 1/I, and not the name of
+ * the asked quantity, a given quantity or a number with a unit.
+ */
+function isMultiple(left, question) {
+  const match = left.trim().match(MULTIPLE);
+  if (!match || question.given.includes(match[3]) || NAMES.includes(match[3])) return false;
+  return Boolean(match[1] || match[2] || match[4] || (match[5] && !question.name.includes("^")));
+}
+
+/** Return [class, sentence] on an answer; of the two readings of 1,234 the better one counts. */
+function grade(answer, question) {
+  const text = withoutSuperscripts(answer);
+  if (/[<>≠≤≥]|!=/.test(text) || isMultiple(text.split(/[=≈]/).slice(0, -1)[0] ?? "", question))
+    return ["wrong", `Write the number alone, or after the name of the quantity and "=".`];
+  const typed = text.replace(/^.*[=≈]/, "").trim().replace(/[.,;]+$/, "");
+  const marks = [...new Set([typed, typed.replace(/(\d),(?=\d{3}(?!\d))/g, "$1")])].map((each) => mark(each, question));
+  return marks.find(([kind]) => kind === "right") ?? marks.find(([kind]) => kind === "partial") ?? marks[0];
+}
+
+/** Return [class, sentence] on one reading of an answer. */
+function mark(typed, question) {
   const number = arithmetic(typed);
   if (!number) return ["wrong", "This is not a number: write for example 0.125, 1.2e-3 or 3/8."];
   const [value, rest] = number;

@@ -8,14 +8,16 @@ from symrot.checker.interface import check
 from symrot.checker.verdict import Verdict
 from symrot.errors import InputError
 from symrot.exercises.exercise import Question
+from symrot.exercises.grading.left_side import names_only
 from symrot.exercises.grading.mark import Mark
 from symrot.exercises.grading.words import FORMULA_FAULTS, RIGHT
 
 __all__ = ["mark_formula"]
 
 _SUBSCRIPTS = str.maketrans(
-    {**{chr(0x2080 + n): f"_{n}" for n in range(10)}, "−": "-", "²": "^2", "³": "^3", "·": "*", "⋅": "*", "×": "*"}
-)
+    {**{chr(0x2080 + n): f"_{n}" for n in range(10)}, "−": "-", "²": "^2", "³": "^3", "·": "*", "⋅": "*", "×": "*",
+     "π": " pi ", "√": " sqrt "}
+)  # fmt: skip
 GREEK = {
     "α": "alpha", "θ": "theta", "φ": "phi", "ϕ": "phi", "ψ": "psi", "ω": "omega", "Ω": "Omega", "τ": "tau",
     "δ": "delta", "γ": "gamma", "μ": "mu", "ρ": "rho", "β": "beta", "ε": "epsilon",
@@ -30,10 +32,14 @@ FUNCTIONS = (
 LONGEST_PRODUCT = 12
 """Largest number of letters in a product that is written without signs, such as ``mgl``."""
 
+JOIN = "\N{INVISIBLE TIMES}"
+"""Sign between names that were written together, as in ``Cω``."""
+
 MAYBE_EXCHANGED = ("none", "two_faults", "dimension")
 """Diagnoses of a formula that may be right with two letters exchanged."""
 
 _NAME = re.compile(r"[^\W\d]\w*")
+_CHAIN = re.compile(rf"/\s*([^\W\d]\w*(?:{JOIN}[^\W\d]\w*)+)((?:\^|\*\*)\s*\d+)?")
 _JOINED = re.compile(r"(?P<divided>/\s*)?(?P<name>[^\W\d]\w*)(?P<power>(?:\^|\*\*)\s*\d+)?")
 
 
@@ -50,7 +56,10 @@ def mark_formula(key: str, answer: str, question: Question) -> Mark:
         Of kind ``"formula"``.
     """
     try:
-        own, truth = _sides(answer, question)
+        left, formula = _parts(answer, question)
+        if left and not names_only(left, question.name, question.symbols):
+            _require_right(left, question)
+        own, truth = _sides(formula, question)
         verdict = _verdict(own, truth, question)
     except InputError as reason:
         return Mark(key, answer, "unread", text=str(reason))
@@ -95,25 +104,41 @@ def _verdict(
     return check(f"{truth} = {own}" if latex else f"{truth} == {own}", assume=assume, units=units, repair=repair)
 
 
-def _sides(answer: str, question: Question) -> tuple[str, str]:
-    """Return the student's formula and the right formula, both as LaTeX or both as typed text.
+def _parts(answer: str, question: Question) -> tuple[str, str]:
+    """Return the text in front of the equals sign of an answer, empty if there is none, and the formula behind it.
 
-    The name of the quantity and ``=`` in front of the student's formula are dropped.
-
-    Raises
-    ------
-    InputError
-        For a text with several equations or without a formula, and for typed names that the exercise does not have.
+    Raise InputError for a text with several equations or without a formula.
     """
     text = answer.strip().strip("$").strip()
     *names, formula = re.split(r"==?|:=", text)
     if len(names) > 1 or not formula.strip() or "\n" in formula:
         raise InputError(f"expected one formula for ${question.name}$ with at most one '=', got {answer[:60]!r}")
+    return "".join(names).strip(), formula
+
+
+def _require_right(left: str, question: Question) -> None:
+    """Raise InputError unless the left side of a student's equation, which is no name, equals the right formula."""
+    try:
+        is_right = _is_right(_verdict(*_sides(left, question), question, repair=False))
+    except InputError:
+        is_right = False
+    if not is_right:
+        raise InputError(
+            f"expected a formula for ${question.name}$, alone or after its name and '=', got {left[:60]!r} in front of "
+            "'='"
+        )
+
+
+def _sides(formula: str, question: Question) -> tuple[str, str]:
+    """Return the student's formula and the right formula, both as LaTeX or both as typed text.
+
+    Raise InputError for typed names that the exercise does not have.
+    """
     if "\\" in formula:
         return formula, question.latex
-    bare = re.sub(r"\{([^{}]*)\}", r"\1", re.sub(r"\^\{([^{}]*)\}", r"^(\1)", formula))
-    plain = _plain(bare.translate(_SUBSCRIPTS))
+    bare = re.sub(r"\{([^{}]*)\}", r"(\1)", re.sub(r"(?<=_)\{([^{}]*)\}", r"\1", formula))
     known = (*question.symbols, *FUNCTIONS)
+    plain = _CHAIN.sub(_chain, _plain(bare.translate(_SUBSCRIPTS))).replace(JOIN, " ")
     plain = _JOINED.sub(lambda match: _split(match, known), plain)
     unknown = sorted({name for name in _NAME.findall(plain) if name not in known})
     if unknown:
@@ -126,17 +151,23 @@ def _sides(answer: str, question: Question) -> tuple[str, str]:
 def _plain(text: str) -> str:
     """Return a typed formula in the checker's language.
 
-    Greek letters are spelled out, rates are written as ``dphi`` (for ``phi_dot`` or a letter with a dot), and inverse
-    functions as ``acos`` (for ``arccos``).
+    Greek letters are spelled out, with JOIN between names that were written together. Rates are written as ``dphi``
+    (for ``phi_dot`` or a letter with a dot), and inverse functions as ``acos`` (for ``arccos``).
     """
     text = re.sub(r"\barc(sin|cos|tan)", r"a\1", text)
     text = re.sub(r"\bAbs\b", "abs", text)
     for letter, name in GREEK.items():
         text = text.replace(f"{letter}\u0307", f" d{name}")
         text = re.sub(rf"\b{name}_?dot\b", f"d{name}", text)
-        text = re.sub(rf"(?<=[^\W_]){letter}", f" {letter}", text).replace(letter, name)
-        text = re.sub(rf"{name}(?=[^\W\d_])", f"{name} ", text)
+        text = re.sub(rf"(?<=[^\W_]){letter}", f"{JOIN}{letter}", text).replace(letter, name)
+        text = re.sub(rf"{name}(?=[^\W\d_])", f"{name}{JOIN}", text)
     return text
+
+
+def _chain(match: re.Match[str]) -> str:
+    """Return a divisor of names that were written together in brackets: ``/Cω`` divides by both, as ``/mgl`` does."""
+    names = match[1].split(JOIN)
+    return match[0] if any(name in FUNCTIONS for name in names) else f"/({'*'.join(names)}{match[2] or ''})"
 
 
 def _split(match: re.Match[str], known: Collection[str]) -> str:

@@ -10,6 +10,7 @@ from symrot.checker.units.conversion import ANGULAR, UnitProduct
 from symrot.checker.units.units import unit_text
 from symrot.errors import InputError
 from symrot.exercises.exercise import Question
+from symrot.exercises.grading.left_side import is_multiple
 from symrot.exercises.grading.mark import Mark
 from symrot.exercises.grading.words import NUMBER_FAULTS, RIGHT, SLIPS
 from symrot.exercises.units import unit_of
@@ -30,11 +31,13 @@ _LATEX = (
     (r"\\(?:SI|qty)\{([^{}]*)\}\{([^{}]*)\}", r"\1 \2"), (r"\\(?:mathrm|text|operatorname|rm)\s*\{([^{}]*)\}", r" \1 "),
     (r"\^\{?\\circ\}?|\\degree|°", " deg"), (r"\\(?:cdot|times)\b|[·⋅×]", "*"), (r"\\approx\b|≈", "="),
     (r"\\[,;: !]|~|\\quad|\\left|\\right|\$", " "), (r"\\pi\b|π", " pi "), (r"[{]", "("), (r"[}]", ")"), ("−", "-"),
-    ("²", "^2"), ("³", "^3"),
     (r"√\(", "sqrt("), (r"√(\d+(?:\.\d+)?)", r"sqrt(\1)"),
 )  # fmt: skip
 """Pairs (regular expression, replacement), applied in turn, that turn LaTeX, and signs such as ² and π, into ASCII."""
 
+_RAISED = re.compile("[⁺⁻]?[⁰¹²³⁴-⁹]+")
+_PLAIN_DIGITS = str.maketrans("⁺⁻⁰¹²³⁴⁵⁶⁷⁸⁹", "+-0123456789")
+_COMPARISON = re.compile(r"[<>≠≤≥]|!=|\\(?:neq?|leq?|geq?)\b")
 _EXPONENT = re.compile(r"(\d)\s*[*x]\s*10\s*(?:\^|\*\*)\s*\(?([+-]?\d+)\)?")
 _HERTZ = re.compile(r"(?<![A-Za-z])(k|M|)Hz\b")
 _ROTATIONS = {"": "rev/s", "k": "rev/ms", "M": "rev/us"}
@@ -75,7 +78,8 @@ def mark_number(key: str, answer: str, question: Question) -> Mark:
     """
     # next to an angle, a hertz is one rotation per second, as the checker reads it
     turns = not ANGULAR.isdisjoint(re.findall(r"[a-z]+", question.unit))
-    numbers = [*_readings(_HERTZ.sub(lambda match: _ROTATIONS[match[1]], answer) if turns else answer)]
+    text = _HERTZ.sub(lambda match: _ROTATIONS[match[1]], answer) if turns else answer
+    numbers = [*_readings(text, question)]
     if not numbers:
         example = f"0.125 {question.unit}".strip()
         sentence = f"expected a number with a unit such as '{example}', got {answer[:60]!r}"
@@ -84,9 +88,16 @@ def mark_number(key: str, answer: str, question: Question) -> Mark:
     return max(marks, key=lambda mark: mark.credit)
 
 
-def _readings(answer: str) -> Iterator[_Number]:
-    """Yield the possible readings of a typed number: ``1,234`` may be 1.234 or 1234."""
-    text = answer.strip()
+def _readings(answer: str, question: Question) -> Iterator[_Number]:
+    """Yield the possible readings of a typed number: ``1,234`` may be 1.234 or 1234.
+
+    There are none for an inequality such as ``5 >= 4``, and for an equation such as ``2 I = 4 kg m^2``, which does not
+    state the asked quantity itself.
+    """
+    left = answer[: sign.start()].strip() if (sign := re.search(r"=|≈|\\approx\b", answer)) else ""
+    if _COMPARISON.search(answer) or is_multiple(left, question.name, question.symbols):
+        return
+    text = _RAISED.sub(lambda match: f"^{match[0].translate(_PLAIN_DIGITS)}", answer.strip())
     for pattern, instead in _LATEX:
         text = re.sub(pattern, instead, text)
     text = re.split(r"=", text)[-1].strip().rstrip(".,;")
@@ -174,7 +185,7 @@ def _factor(unit: UnitProduct | None) -> float:
 
 
 def _near(value: float, truth: float) -> bool:
-    return abs(value - truth) <= TOLERANCE * abs(truth) or abs(value - truth) < SMALL
+    return abs(value - truth) <= TOLERANCE * (1 + 1e-9) * abs(truth) or abs(value - truth) < SMALL
 
 
 def _rounds(value: float, truth: float, half_digit: float) -> bool:

@@ -93,9 +93,10 @@ def _inverse(a: Parts) -> Parts:
 def _sqrt(a: Disc, whole: float) -> Disc:
     """Return a disc that contains the square roots of all numbers in the disc ``a``.
 
-    Unless all numbers in ``a`` have a positive real part, the radius is multiplied by ``whole``. This is 1 divided by
-    the largest share of a change that the polynomial of a step may miss; the polynomial may miss the change of a square
-    root near zero entirely, because the root has no Taylor series at zero.
+    A root near zero has no Taylor series, so that the polynomial of a step may miss its whole change. The caller
+    multiplies all bounds by the missed share, the part of a change that the polynomial misses at most. ``whole`` is 1
+    divided by the missed share. Unless all numbers in ``a`` have a positive real part, the radius is multiplied by
+    ``whole``: the two factors cancel, and the bound of the root's change counts in full.
     """
     root = math.sqrt(max(a.centre, 0.0))
     if a.centre > a.radius:
@@ -213,9 +214,10 @@ class Deviations:
         """Return, for each rate, a bound of its change while time and states vary around ``t`` and ``y``.
 
         Time varies in a complex disc with the radius ``radius``, s, and state k in a disc with the radius ``radii[k]``.
-        The caller multiplies all bounds by the largest share of a change that the polynomial of a step may miss. But it
-        may miss the change of a square root near zero entirely: the bound of such a root is multiplied by ``whole``, 1
-        divided by that share. A bound is infinite if a pole may lie in the discs.
+        The caller multiplies all bounds by the missed share, the part of a change that the polynomial of a step misses
+        at most. ``whole`` is 1 divided by the missed share: the bound of a square root near zero is multiplied by it,
+        so that the two factors cancel. The polynomial may miss the whole change of such a root, because the root has no
+        Taylor series at zero. A bound is infinite if a pole may lie in the discs.
         """
         self.spent += 1
         try:

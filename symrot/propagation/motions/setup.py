@@ -48,6 +48,8 @@ def python_rates(plan: Plan, kernel: SceneKernel) -> Callable[..., Any]:
 class Setup:
     """The data that all motions of one plan, the equations of a scene, share: method, kernel, numbers of the scene.
 
+    The kernel is the generated code that computes the rates and the output quantities.
+
     Attributes
     ----------
     plan : Plan
@@ -135,7 +137,7 @@ class Setup:
 
 @final
 class SteppedSetup:
-    """The data that all motions of one plan in C share: a :class:`Setup` and the compiled library."""
+    """The data that all motions of one plan in C share: a :class:`Setup` and the compiled library of its equations."""
 
     def __init__(self, setup: Setup, library: Path) -> None:
         self.setup, self.library = setup, library
@@ -162,7 +164,10 @@ class SteppedSetup:
 
 
 def stepped_on_own_clock(setup: Setup) -> SteppedSetup:
-    """Return the compiled setup of motions for ``setup``, in which time is counted from the start of the motion."""
+    """Return ``setup`` together with the compiled C library that integrates its equations of motion.
+
+    The clock of ``setup`` shows 0 at the start of the motion (:attr:`Setup.on_own_clock`).
+    """
     if setup.choice.method == "taylor":
         return SteppedSetup(setup, taylor_library(setup.plan, setup.kernel, setup.tolerance))
     return SteppedSetup(setup, motion_library(setup.plan, setup.kernel))

@@ -50,9 +50,12 @@ class Crossings:
     Parameters
     ----------
     guards : Guards
-        The guards and rates.
+        Computes the arguments of the switching functions (sign, abs, ..), the rates of the states, and the derivatives
+        of both.
     changes : mapping
-        For each pair (time in s, function): the way in which the function switches then, such as ``"passed"``.
+        For each pair (time in s, function as the user wrote it): how the argument of the function behaves then. It is
+        ``"passed"`` if the argument passes zero, ``"held"`` if it stays there from then on, and ``"released"`` if it
+        leaves zero, where it was held.
     length : float
         The length of the motion, s.
 
@@ -65,7 +68,9 @@ class Crossings:
     def __init__(self, guards: Guards, changes: Mapping[tuple[float, str], str], length: float) -> None:
         self.guards, self._changes, self.length = guards, changes, length
         self.switchings: list[SwitchSlopes] = []
-        self._last: tuple[Interval, Instant, dict[str, Flip], bool] | None = None  # the last jump of the rates
+        # the last jumps of the rates, each within rounding errors of the one before: the interval before them, the time
+        # of the last one, the functions that switched, and whether nothing else switched and no argument is held
+        self._last: tuple[Interval, Instant, dict[str, Flip], bool] | None = None
 
     def across(self, before: Interval, after: Interval, by: Floats) -> Floats:
         """Return the derivatives of the states after a switch between two intervals, shape (7, m).
@@ -74,13 +79,8 @@ class Crossings:
         :attr:`switchings`. Raise PropagationError if the derivatives after the switch do not exist.
         """
         guards = self.guards
-        changed = [
-            mode
-            for mode, value in after.modes.items()
-            if mode
-            not in {*before.held, *after.held, *guards.system.tied(before.held), *guards.system.tied(after.held)}
-            and value != before.modes[mode]
-        ]
+        sliding = {*before.held, *after.held, *guards.system.tied(before.held), *guards.system.tied(after.held)}
+        changed = [mode for mode, value in after.modes.items() if mode not in sliding and value != before.modes[mode]]
         held, released = after.held - before.held, sorted(before.held - after.held)
         if not changed and not held and not released:
             return by
@@ -108,16 +108,19 @@ class Crossings:
                 )
             rows[mode] = np.full(len(by.T), np.nan) if grazes else 0.0 - guard.change(by) / speed
         if not jumps and float(np.abs(later - f).max()) > STEEP * float(np.abs([f, later]).max()):
-            names_of = " and ".join(map(guards.name, [*changed, *sorted(held), *released]))
-            raise guards.refusal(before.end, f"the torque jumps although no argument of {names_of} is zero")
+            names_of = " or ".join(map(guards.name, [*changed, *sorted(held), *released]))
+            raise guards.refusal(
+                before.end,
+                f"the torque jumps there, but not because the argument of {names_of} becomes zero: the derivatives of "
+                "the time of such a jump cannot be computed",
+            )
         first = next(iter(jumps), None)
         if first is not None:
             flips = {mode: Flip(after.modes[mode], rows[mode], jumps[mode].states) for mode in jumps}
             alone = not held and set(changed) <= causes.keys()
             change = self._at_once(before, flips, alone)
-            self._last = before, after.begin, flips, alone
             if change is not None:
-                self._append_switches(after.begin, rows, rows[first])
+                self._append_switches(after.begin, rows, rows[first], {*changed, *sliding})
                 return np.asarray(by - change)
         if not causes:
             for mode in released:
@@ -125,19 +128,18 @@ class Crossings:
                 speed = value.along(f)
                 grazes = not abs(speed) > STEEP * value.size(f)
                 rows[mode] = np.full(len(by.T), np.nan) if grazes else 0.0 - value.change(by) / speed
-        self._append_switches(after.begin, rows, rows[first] if first is not None else None)
+        self._append_switches(after.begin, rows, rows[first] if first is not None else None, {*changed, *sliding})
         return by if first is None else np.asarray(by - np.outer(later - f, rows[first]))
 
     def _at_once(self, interval: Interval, flips: dict[str, Flip], alone: bool) -> Floats | None:
-        """Return the jump of the states' derivatives by the variables, shape (7, m), at the end of ``interval``.
+        """Return the change of the states' derivatives by the variables at a switch of several functions, shape (7, m).
 
-        Several functions (sign, ..) may switch at this time. Return None if the jump can be computed as for one
-        function: if only one switches, if the times of all switches have the same derivatives by the variables, or if
-        the last switch before was earlier by no more than rounding errors, so that its jump is already computed.
+        The functions (sign, ..) switch at the end of ``interval``. Return None if the change can be computed as for one
+        function: if only one function switches, or if the times of all switches have the same derivatives by the
+        variables. The variables are the initial values and constants by which the motion is differentiated.
 
-        The order of the switches must not matter: raise PropagationError unless the switch of each function changes the
-        rates by the same amount whether or not the others have switched, and does not change the time derivatives of
-        the arguments of the others.
+        Raise PropagationError if the states after the switches may depend on the order of the switches. Switches that
+        were earlier by no more than rounding errors are included.
 
         Parameters
         ----------
@@ -146,22 +148,35 @@ class Crossings:
         flips : mapping
             A function's mode (name of the number that replaces the function in formulas) -> the switch of the function.
         alone : bool
-            Whether no function other than those in ``flips`` switches, and no argument is held at zero from then on.
+            Whether no function other than those in ``flips`` switches, and no argument of a function is held at zero
+            from then on.
         """
-        guards, earlier = self.guards, self._last
-        between = earlier is not None and abs(interval.end - earlier[1]) <= AT_SWITCH * max(
-            abs(interval.end.high), self.length
-        )
-        if earlier is not None and between:
-            # a switch within rounding errors of this one; both must be independent of each other
-            interval, flips, alone = earlier[0], {**earlier[2], **flips}, alone and earlier[3]
+        earlier, end = self._last, interval.end
+        self._last = interval, end, flips, alone
+        if earlier is not None and abs(end - earlier[1]) <= AT_SWITCH * max(abs(end.high), self.length):
+            first, _, others, others_alone = earlier
+            self._last = first, end, {**others, **flips}, alone and others_alone
+            # the derivatives already contain the changes at the earlier switches
+            self._change_in_any_order(first, self._last[2], self._last[3])
+        return self._change_in_any_order(interval, flips, alone)
+
+    def _change_in_any_order(self, interval: Interval, flips: dict[str, Flip], alone: bool) -> Floats | None:
+        """Return the result of :meth:`_at_once` for functions that switch at the end of ``interval``.
+
+        The order of the switches must not matter: raise PropagationError unless the switch of each function changes the
+        rates by the same amount whether or not the others have switched, and does not change the time derivatives of
+        the arguments of the others. The arguments are those of :meth:`_at_once`.
+        """
+        guards = self.guards
         groups: list[list[str]] = []
         for mode, flip in flips.items():
             group = next((each for each in groups if alike(flips[each[0]].time, flip.time).all()), None)
             groups.append([mode]) if group is None else group.append(mode)
         if len(groups) == 1:
             return None
-        refusal = guards.refusal(interval.end, f"{' and '.join(map(guards.name, flips))} switch at the same time")
+        functions = " and ".join(map(guards.name, flips))
+        reason = "a small change of a variable separates the switches, and their order may then matter"
+        refusal = guards.refusal(interval.end, f"{functions} switch at the same time: {reason}")
         if not alone or len(groups) > MOST_AT_ONCE:
             raise refusal
         corners = {}
@@ -181,23 +196,25 @@ class Crossings:
                 speeds = np.delete(jumps, k, axis=0) @ flips[mode].guard
                 if np.abs(speeds).max() > size * float(np.abs(flips[mode].guard).max()):
                     raise refusal
-        if between:
-            return None
         return np.asarray(jumps.T @ np.array([flips[group[0]].time for group in groups]))
 
-    def _append_switches(self, instant: Instant, rows: Mapping[str, Floats], others: Floats | None) -> None:
+    def _append_switches(
+        self, instant: Instant, rows: Mapping[str, Floats], others: Floats | None, changed: set[str]
+    ) -> None:
         """Append the switches at an instant to :attr:`switchings`, with the m derivatives of their time.
 
-        ``rows`` is a map from the mode of a switching function (name of the number that replaces it in formulas) to
-        its m derivatives. ``others`` are the derivatives for every function that is not in ``rows``; None stands for
-        NaN.
+        ``rows`` is a map from a switching function to the m derivatives of the time at which the function switches. The
+        function is named by its mode, the number that replaces the function in formulas. ``others`` are the derivatives
+        for every other function in ``changed``, whose value differs before and after the instant or whose argument
+        stays at zero; None stands for NaN. A function that switches at the instant and back again has NaN.
         """
+        names = set(map(self.guards.name, changed))
         unknown = np.full(len(self.guards.parameter_slopes.columns), np.nan)
         for (t, label), how in self._changes.items():
             if t == instant.high:
                 # clip has two modes
                 row = next((own for mode, own in rows.items() if self.guards.name(mode) == label), None)
-                own = row if row is not None else others if others is not None else unknown
+                own = row if row is not None else others if others is not None and label in names else unknown
                 self.switchings.append(SwitchSlopes(t, label, how, own))
 
 

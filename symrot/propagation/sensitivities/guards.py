@@ -105,7 +105,10 @@ class Guards:
     # ------------------------------------------------------------------------------------------------- functions
 
     def name(self, mode: str) -> str:
-        """Return the function for which ``mode`` stands, as the user wrote it, such as ``"sign(omega_3)"``."""
+        """Return a function as the user wrote it, such as ``"sign(omega_3)"``.
+
+        ``mode`` is the name of the number that replaces the function in formulas.
+        """
         return self._by_name[mode].label
 
     def is_floor(self, mode: str) -> bool:
@@ -116,18 +119,25 @@ class Guards:
         return self._by_name[mode].kind == "floor"
 
     def is_sign(self, mode: str) -> bool:
-        """Return whether ``mode`` stands for a function of the sign of x, such as sign(x), abs(x) or step(x)."""
+        """Return whether a function depends on the sign of its argument, as sign, abs and step do and floor does not.
+
+        ``mode`` is the name of the number that replaces the function in formulas.
+        """
         return self._by_name[mode].kind == "sign"
 
     def is_continuous(self, mode: str) -> bool:
-        """Return whether the function for which ``mode`` stands, such as abs, has only kinks, no jumps."""
+        """Return whether a function has only kinks and no jumps, as abs has.
+
+        ``mode`` is the name of the number that replaces the function in formulas.
+        """
         return is_continuous(self._by_name[mode])
 
     def twins(self, mode: str) -> list[tuple[str, int]]:
-        """Return the functions that switch together with the function of ``mode``, as pairs (mode, 1 or -1).
+        """Return the functions that switch together with a function such as sign(x), as pairs (name, 1 or -1).
 
-        A mode is the name of the number that replaces a function such as sign(x) in formulas. The list includes the
-        pair of ``mode`` itself; 1 or -1 is the sign of the argument relative to the argument of the first pair.
+        The name is that of the number that replaces the function in formulas; ``mode`` is the name for the given
+        function. The list includes a pair for the given function. 1 or -1 is the sign of the argument relative to the
+        argument of the function in the first pair.
         """
         return self.system.twins.get(mode, [(mode, 1)])
 
@@ -182,9 +192,10 @@ class Guards:
         return Gradient(float(dual.value), float(dual.slopes.get("t", 0.0)), states, np.array(by))
 
     def guard(self, interval: Interval, mode: str, t: float, y: Floats) -> Gradient:
-        """Return the argument of the function (sign, abs, ..) for which ``mode`` stands, with its derivatives.
+        """Return the argument of a function (sign, abs, ..), with its derivatives, at the time t and the states y.
 
-        For floor(x) the result is x - n, where n is the present value of the function.
+        ``mode`` is the name of the number that replaces the function in formulas. For floor(x) the result is x - n,
+        where n is the present value of the function.
         """
         inputs = self._duals(interval.regime.parameters, interval, t, y, "guards")
         return self._gradient(evaluate(interval.regime.formulas[mode], inputs, DUALS, float))

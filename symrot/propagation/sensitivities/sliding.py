@@ -35,10 +35,10 @@ def beside(guards: Guards, interval: Interval, signs: Mapping[str, int]) -> Inte
 def hold_at_rest(guards: Guards, interval: Interval) -> None:
     """Change the equations of an interval so that arguments that stay at zero in the interval are kept at zero.
 
-    The arguments (guards) are those of functions such as sign and abs. If an argument stays at zero, but the equations
-    cannot force it to, the name of the function's mode, the number that replaces the function in formulas, is appended
-    to ``interval.resting``. An argument is left alone if the rates and their derivatives are the same on both sides of
-    its zero.
+    The arguments (guards) are those of functions such as sign and abs. If a value of the function keeps its argument at
+    zero, the equations determine this value from then on. Otherwise the function is appended to ``interval.resting``,
+    for :func:`refuse_resting`; it is named by its mode, the number that replaces the function in formulas. An argument
+    is left alone if the rates and their derivatives are the same on both sides of its zero.
     """
     resting = [mode for mode in interval.regime.formulas if mode not in interval.held and rests(guards, interval, mode)]
     for mode in resting:
@@ -101,11 +101,12 @@ def _is_smooth_at(guards: Guards, interval: Interval, mode: str) -> bool:
 
 
 def require_one_surface(guards: Guards, interval: Interval, mode: str, t: float, y: Floats) -> None:
-    """Raise PropagationError if two functions switch together now, but apart after a small change of a variable.
+    """Raise PropagationError if two functions switch at one time, but a small change of a variable separates them.
 
-    One is a sign or abs; ``mode`` is the name of the number that replaces it in formulas. Example: sign(omega_3 - c)
-    and sign(omega_3 - d) with c = d. If c changes alone, the arguments are zero at different times, and a motion cannot
-    slide along both jumps.
+    The time is ``t``. Example: sign(omega_3 - c) and sign(omega_3 - d) with c = d. If c changes alone, the arguments
+    are zero at different times, and a motion cannot slide along both jumps. ``mode`` names one of the functions, a sign
+    or abs whose argument is zero at ``t``: it is the name of the number that replaces this function in formulas. The
+    other function is any whose argument is a multiple of this argument for the present values of the variables.
     """
     guard = guards.guard(interval, mode, t, y)
     own = np.array([guard.time, *guard.states, *guard.variables])
@@ -115,6 +116,6 @@ def require_one_surface(guards: Guards, interval: Interval, mode: str, t: float,
         other = guards.guard(interval, twin, t, y)
         row = np.array([other.time, *other.states, *other.variables])
         if np.abs(own * (row @ own) - row * (own @ own)).max() > ALIKE * (own @ own) * np.abs(row).max():
-            raise guards.refusal(
-                interval.zero.after(t), f"{guards.name(mode)} and {guards.name(twin)} switch at the same time"
-            )
+            functions = f"{guards.name(mode)} and {guards.name(twin)}"
+            reason = "a small change of a variable separates the switches, and the motion cannot slide along both jumps"
+            raise guards.refusal(interval.zero.after(t), f"{functions} switch at the same time: {reason}")

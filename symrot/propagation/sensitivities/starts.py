@@ -57,7 +57,9 @@ def from_start(guards: Guards, interval: Interval, by: Floats) -> Floats:
     size = ALIKE * max(float(np.abs(rates).max()) for rates in corners.values())
     for signs, rates in corners.items():
         if np.abs(first + jumps @ (np.array(signs) - 1.0) - rates).max() > size:
-            raise guards.refusal(interval.begin, f"{' and '.join(map(guards.name, held))} switch at the same time")
+            functions = " and ".join(map(guards.name, held))
+            reason = "the change of the torque at one switch depends on the others"
+            raise guards.refusal(interval.begin, f"{functions} switch at the same time: {reason}")
     return np.asarray(
         by - jumps @ np.linalg.solve(np.array([gradient.states for gradient in gradients]) @ jumps, changes)
     )

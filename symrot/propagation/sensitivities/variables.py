@@ -253,8 +253,8 @@ def slopes(values: Callable[[Fraction], Numbers], step: Fraction, name: str) -> 
         if slope is None:
             raise InputError(
                 f"sensitivities: expected a value of {name} at which the equations of motion have a derivative, but "
-                f"{each}, a constant in them that depends on {name}, has a kink or a jump there; change the value "
-                "slightly"
+                f"their constant {each}, which is computed from {name}, has a kink or a jump at the present value of "
+                f"{name}; change the value slightly"
             )
         result[each] = slope
     return result

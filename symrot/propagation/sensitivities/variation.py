@@ -233,7 +233,7 @@ def _parts(scene: Scene, columns: Sequence[Column], epoch: float = 0.0) -> "list
 
 
 class _Part:
-    """A compiled library that integrates the motion and its derivatives by up to :data:`AT_ONCE` variables."""
+    """A compiled library that integrates the motion and its derivatives by m variables, at most :data:`AT_ONCE`."""
 
     def __init__(self, scene: Scene, columns: Sequence[Column], epoch: float) -> None:
         # epoch: the scene time, s, from which the equations count time
@@ -260,7 +260,11 @@ class _Part:
         return list(self._rates.evaluate({**values, "t": float(time)}, FLOAT_FUNCTIONS, float).values())
 
     def follow(self, scene: Scene, times: Floats, begin: float, epoch: float) -> tuple[Floats, Floats]:
-        """Return the states at times and their derivatives, as :meth:`SmoothEquations.follow` does."""
+        """Return the states at n times, shape (n, 7), and their derivatives by the variables of this part, (n, 7, m).
+
+        ``times`` and the initial time ``begin`` are times of the scene, s. ``epoch`` is the time of the scene, s, from
+        which the equations of this part count time.
+        """
         start = [float(value) for value in (*scene.initial.omega_b, *scene.initial.quaternion)]
         starts = [column.start_from(scene.initial) for column in self.columns]
         units = [unit_of(scene, column) for column in self.columns]
@@ -354,7 +358,8 @@ def follow_interval(
     y, by : arrays, shapes (7,) and (7, m)
         States, and their derivatives by the variables, at the time ``begin``.
     units : list of m floats
-        As for :func:`follow_columns`; the list is changed in place to the units used last.
+        For each variable, a power of two near its size, by which its derivatives are multiplied during integration. The
+        list is changed in place to the units used last, which :func:`follow_columns` returns.
     begin, times, labelled
         As for :func:`follow_columns`: initial time, sample times, and the function that returns the error to raise.
     """

@@ -55,7 +55,10 @@ between two moves are alike and add up: with 8192 steps they were five times as 
 
 
 def step_tolerance(tolerance: float) -> tuple[float, float]:
-    """Return the error allowed in one long step, and the least length of a long step as a fraction of the span."""
+    """Return the error allowed in one long step, and the length from which a step is long, as a fraction of the span.
+
+    A shorter step is allowed an error in proportion to its length.
+    """
     # Steps are about tolerance^(1/8) natural times long (a natural time: the motion changes noticeably), and a shorter
     # step gets a proportional share of the error. So the sum of all shares grows with the number of natural times in
     # the span, not of steps: the final error over the tolerance hardly depends on tolerance or span.
@@ -99,7 +102,8 @@ def translation_unit(
     if edges[:1] != [0] or edges[-1] != states or edges != sorted(set(edges)) or len(scales) != len(edges) - 1:
         raise InputError(
             f"blocks: expected block edges that increase from 0 to {states} (the number of states), and one scale per "
-            f"block, got edges {edges} and scales {list(scales)}"
+            "block (a block is a group of consecutive states whose errors are measured together), got edges "
+            f"{edges} and scales {list(scales)}"
         )
     bounds = c_text("propagation/enclosures/enclosure.h")
     return "\n".join(

@@ -461,7 +461,8 @@ class _Integration:
     def _judge_pace(self, t: float, stop: float) -> None:
         """Raise IntegrationStopped if the evaluations up to the time t, s, exceed their limit.
 
-        Do so also if they would exceed it by far on the way to ``stop`` at their present pace.
+        Raise it early if, at the present pace, the motion would need far more evaluations up to ``stop`` than the limit
+        allows.
         """
         work = self.work
         spent = work - self.mark[0]
@@ -478,10 +479,11 @@ class _Integration:
         return self.work + (self.whole.spent if self.whole else 0)
 
     def _proven(self, t: float, y: Floats, dense: Any, now: float, step: float, bars: list[float]) -> float:
-        """Return the length, s, at most ``step``, up to which a step's error from a missed pulse is proven small.
+        """Return a length, s, at most ``step``, over which a pulse that SciPy misses is proven to cause a small error.
 
-        The step begins with the states ``y`` at the scene time ``t``, when SciPy's clock shows ``now``; ``dense`` is
-        SciPy's interpolant. ``bars``: for each block of states (omega, attitude), the largest error allowed.
+        A pulse is missed if it lies between the times at which SciPy evaluates the rates in a step. The step begins
+        with the states ``y`` at the scene time ``t``, when SciPy's clock shows ``now``; ``dense`` is SciPy's
+        interpolant. ``bars``: for each block of states (omega, attitude), the largest error allowed.
         """
         assert self.deviations is not None
         path = np.abs(_FIT @ (dense(now + _NODES * step).T - y)).T.tolist()

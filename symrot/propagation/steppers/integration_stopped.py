@@ -12,7 +12,7 @@ from symrot.propagation.steppers.stats import Stats
 __all__ = ["HOPELESS", "IntegrationStopped", "Samples", "add_samples", "why_hopeless", "why_stuck"]
 
 HOPELESS = 3.0  # times the limit of steps: a motion that would need more steps at its present pace is stopped
-MANY_TICKS = 2**20  # doubles between both ends of a step: with fewer, the clock is too coarse for the step
+MANY_TICKS = 2**20  # doubles between both ends of a motion: with fewer, times are too coarse for its steps
 
 Floats = NDArray[np.float64]
 
@@ -74,8 +74,8 @@ def add_samples(error: BaseException, numbers: NDArray[np.intp], states: Floats,
 def why_stuck(reason: str, t: float, t0: float, stop: float) -> str:
     """Return why a stepper is stuck at the time t of a motion from ``t0`` to ``stop``, s.
 
-    If fewer than about a million doubles with the spacing at t fit between the ends of the motion, the steps are too
-    short for doubles. Otherwise the result is ``reason``.
+    If the whole motion is shorter than about a million times the distance from t to the next double, the reason is that
+    the steps are too short for doubles at this time. Otherwise the result is ``reason``.
     """
     apart = math.ulp(t)
     if abs(stop - t0) > MANY_TICKS * apart:
@@ -85,7 +85,7 @@ def why_stuck(reason: str, t: float, t0: float, stop: float) -> str:
 
 
 def why_hopeless(steps: int, way: float, left: float, limit: int) -> str:
-    """Return why a motion would exceed ``limit`` steps by far if it went on at its pace; empty if it would not.
+    """Return the sentence that a motion would need far more than ``limit`` steps at its present pace; else ``""``.
 
     The last ``steps`` steps covered ``way`` s; ``left`` s remain.
     """

@@ -23,7 +23,7 @@ class RoundingSum:
     size : float
         Largest size of the block of states so far, to which the tolerance is relative.
     beyond : float or None
-        Time, s, from which the error may exceed the tolerance; None as long as it may not.
+        Time, s, from which the error may exceed the tolerance; None if it cannot in the steps so far.
     """
 
     def __init__(self, tolerance: float) -> None:

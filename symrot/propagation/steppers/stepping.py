@@ -126,7 +126,11 @@ class Run(ctypes.Structure):
 
 
 class Stepper(ABC):
-    """The C functions of one loaded library with a stepper; each subclass defines the parts of its method."""
+    """The C functions of one loaded library that integrates motions.
+
+    There is a subclass for each method of integration. It defines the fields of the C struct of a motion, the limits
+    and the messages of its method.
+    """
 
     name: ClassVar[str]
     # The fields of symrot_run in C: numbers, integers, and vectors of one number per state.
@@ -185,7 +189,11 @@ class Stepper(ABC):
 
     @abstractmethod
     def enter(self, run: Run, segment: Segment, allowed: float) -> None:
-        """Prepare a run for a segment: set the fields of its C struct that only this stepper uses."""
+        """Set the fields of ``run``, the C struct of a motion, that only this stepper uses, before a new segment.
+
+        ``segment`` is the interval between two jumps of the rates that is integrated next; ``allowed`` is the error
+        allowed in one step, the first number that :meth:`allowance` returns.
+        """
 
     @staticmethod
     @abstractmethod

@@ -71,12 +71,14 @@ class ModeChanges(Guards):
         self.flipped, self.order = {}, []
         self.left, self.visited, self.released, self.rested = set(), {}, set(), set()
 
-    def _coincident(self, regime: Regime, active: list[bool], values: list[float], most: int) -> Guard | None:
-        """Return the guard of a function (sign, floor, ..) that switches at the present time but has not switched yet.
+    def _coincident(self, regime: Regime, active: list[bool], values: list[float], largest_sign: int) -> Guard | None:
+        """Return the guard of a function that must still switch at the present time; None if there is no such function.
 
-        The sign of the guard's formula just after the present time is then at most ``most``, which is -1 or 0. Return
-        None if there is no such function. ``active`` says for each guard of the smooth motion ``regime`` whether its
-        zero ends this motion; ``values`` are the parameters of the guards.
+        A guard is a formula that turns negative where a function (sign, floor, ..) switches. The function must still
+        switch if the sign of the formula just after the present time is at most ``largest_sign``, which is -1 or 0.
+        Functions that have switched at this time, or whose arguments are held at zero, are left out. ``active`` says
+        for each guard of the smooth motion ``regime`` whether its zero ends this motion: the others are left out too.
+        ``values`` are the parameters of the guards.
         """
         # Functions that switch at one time do so one after the other; the rates may have no value until the last one
         # has, such as a root of a negative argument.
@@ -87,8 +89,7 @@ class ModeChanges(Guards):
         guards = [
             (sign, guard)
             for guard, on, sign in zip(regime.guards, active, signs, strict=True)
-            # most: largest sign of a guard that counts, -1 or 0
-            if on and sign <= most and guard.mode not in self.held and not self.flipped.get(guard.mode)
+            if on and sign <= largest_sign and guard.mode not in self.held and not self.flipped.get(guard.mode)
         ]
         return min(guards, key=lambda pair: pair[0])[1] if guards else None
 
@@ -319,10 +320,10 @@ class ModeChanges(Guards):
     def _leaves_zero(self, regime: Regime, active: list[bool], piece: Piece) -> bool:
         """Give each sign(x) with the value 0 the sign of x at the end of ``piece``; return whether a value changed.
 
-        ``piece`` is an interval of the motion. ``active`` says for each guard of the smooth motion ``regime`` whether
-        its zero ends this motion; only the functions of such guards are examined.
+        ``piece`` is an interval of the smooth motion ``regime``. A guard of this motion is a formula that turns
+        negative where a function switches. ``active`` says for each guard whether its zero ends the motion; functions
+        whose guards do not end it have no effect and are left out.
         """
-        # only functions whose guard can end the regime (active)
         numbers = [
             n
             for n, (guard, on) in enumerate(zip(regime.guards, active, strict=True))
@@ -338,9 +339,15 @@ class ModeChanges(Guards):
         return any(signs[n] for n in numbers)
 
     def _settle(self, regime: Regime, active: list[bool], piece: Piece, states: Callable[[Floats], Floats]) -> bool:
-        """Set each function such as sign(x) to its value at zero if x stays zero; return whether a value changed.
+        """Store the value at zero, such as 0 for sign(x), of each function whose argument x stays at zero.
 
-        A sign(x) with the value 0 gets the sign of x if x leaves zero.
+        The values of all functions are stored in ``modes``. x stays at zero if it is zero at the start and at the end
+        of ``piece``, the next interval of the motion. If x leaves zero, a sign(x) with the value 0 gets the sign of x.
+        Return whether a value changed.
+
+        ``states`` takes times in ``piece`` and returns the states. ``active`` says for each guard of the smooth motion
+        ``regime``, a formula that turns negative where a function switches, whether its zero ends this motion;
+        functions whose guards do not end it are left out.
         """
         formulas, settled = [guard.formula for guard in regime.guards], dict(self.modes)
 
@@ -373,7 +380,12 @@ class ModeChanges(Guards):
             self.order += changed
             self.settled += 1
             if self.settled > MOST_SWITCHES:
-                raise IntegrationStopped(self.t, "the torque switches again and again at this time", self.end)
+                raise IntegrationStopped(
+                    self.t,
+                    "the torque switches again and again without end: its functions took their values at zero more "
+                    f"than {MOST_SWITCHES} times; change the torque, or end the motion at this time",
+                    self.end,
+                )
         self.modes = settled
         return bool(changed)
 

@@ -51,16 +51,15 @@ class Guard(NamedTuple):
 class RegimeParameters(NamedTuple):
     """Parameters of the equations between two switches, in which time is counted from an epoch.
 
-    The parameters ``rates``, ``guards`` and ``quantities`` are functions of the epoch, a time of the scene, s
-    (:class:`ShiftedParameters`); ``invariants`` are numbers.
+    Each of ``rates``, ``guards`` and ``quantities`` takes an epoch, a time of the scene, s, and returns the values of
+    parameters (:class:`ShiftedParameters`): of the rates of the states, of the formulas whose zeros end the motion, and
+    of the output quantities. ``invariants`` are numbers that do not depend on the epoch: the parameters of the output
+    quantities for the Taylor stepper, which corrects conserved quantities; two doubles for each.
     """
 
     rates: ShiftedParameters
-    # of the formulas whose zeros end the motion
     guards: ShiftedParameters
-    # of the output quantities
     quantities: ShiftedParameters
-    # of conserved quantities, as pairs of doubles that do not depend on the epoch: for the Taylor stepper
     invariants: list[float]
 
 
@@ -173,10 +172,10 @@ class Regime:
         return self._bound[place]
 
     def zeros(self, modes: Modes, zero: Instant, y: Floats) -> set[str]:
-        """Return the names of the states and parameters that are zero now, of those that the output quantities contain.
+        """Return the names of the inputs of the output quantities, states and parameters, whose values are zero now.
 
-        ``y`` are the present states, ``modes`` the present values of the functions (sign, abs, ..). The equations count
-        time from the instant ``zero``.
+        ``y`` are the present states, ``modes`` the present values of the functions (sign, abs, ..); ``zero`` is the
+        instant from which the equations count time.
         """
         # with these names one decides whether x in sign(x) stays zero by itself, as in a body at rest
         return {name for name, value in self._inputs(modes, zero, y).items() if value == 0.0}
@@ -196,10 +195,10 @@ class Regime:
         return dict((*values, *zip(self.plan.states, y.tolist(), strict=True)))
 
     def rates_since(self, modes: Modes, zero: Instant) -> Callable[[float], list[float]] | None:
-        """Return a function that takes an epoch, s after ``zero``, and returns the parameters of the rates.
+        """Return a function from an epoch, s after ``zero``, to the values of the parameters of the rates.
 
-        With these parameters the rates count time from the epoch; ``modes`` has the values of the functions (sign, abs,
-        ..). Return None if these parameters do not depend on the epoch.
+        With these values, t in the rates is the time since the epoch. The values also depend on ``modes``, the values
+        of the switching functions (sign, abs, ..), which stay fixed. Return None if no parameter depends on the epoch.
         """
         rates = self._parameters_under(modes).rates
         return None if rates.fixed else lambda since: rates.parameters(zero.exact + Fraction(since))
@@ -218,10 +217,14 @@ class Regime:
         return rates, guards, quantities
 
     def active(self, modes: Modes) -> list[bool]:
-        """Return, for each :class:`Guard` in ``guards``, whether its zero ends the smooth motion."""
+        """Return, for each formula (:class:`Guard`) in ``guards``, whether the smooth motion ends where it is zero.
+
+        A formula turns negative where a switching function changes its value. It does not end the motion if this
+        function has no effect for the present values ``modes`` of all switching functions, as in an unused branch of
+        where(condition, u, v).
+        """
         key = tuple(modes.values())
         if key not in self._active:
-            # it does not if its function has no effect, as in an unused branch of where(condition, u, v)
             self._active[key] = [hold(guard.where, modes, self.held) for guard in self.guards]
         return self._active[key]
 

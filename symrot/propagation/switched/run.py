@@ -113,9 +113,12 @@ class SwitchedRun(ModeChanges):
     def _segment(self, regime: Regime, consume: Consumer) -> Guard | None:
         """Compute the motion up to its next switch, and return the guard that is zero there.
 
-        Return None if the motion ends without a switch, or if it has to be followed again from the time :attr:`t` on.
+        A guard is a formula that turns negative where a function (sign, floor, ..) switches. ``regime`` is the smooth
+        motion for the present values of these functions; ``consume`` takes each :class:`Chunk` of the computed motion.
+        Return None if the motion reaches its end without a switch. Return None also if the values of functions changed
+        at the time :attr:`t`, or if a short hop led to it: the caller then calls this method again from there, with the
+        smooth motion for the present values.
         """
-        # a guard is the argument of a function such as sign or abs
         if self.t != 0.0:
             self._move_clock(self._at(self.t))
         rates, values = regime.bound(self.modes, self.zero)
@@ -291,9 +294,12 @@ class SwitchedRun(ModeChanges):
     def _pass_on(
         self, consume: Consumer, regime: Regime, active: list[bool], chunk: Chunk
     ) -> IntegrationStopped | None:
-        """Pass ``chunk`` to ``consume``, up to where an argument of sign, floor, .. has no value.
+        """Pass an interval of the motion to ``consume``, up to where an argument of sign, floor, .. has no value.
 
-        Return the error that says so, or None if all arguments have values in the whole chunk.
+        ``chunk`` is the interval, ``consume`` the function that takes the intervals of the motion one by one. Return
+        the error that names the argument without a value, or None if all arguments have values in the whole interval.
+        ``active`` says for each guard of the smooth motion ``regime``, a formula that turns negative where a function
+        switches, whether its zero ends this motion; functions whose guards do not end it are left out.
         """
         modes = {guard.mode for guard, on in zip(regime.guards, active, strict=True) if on} - self.held
         partial = [mode for mode in sorted(modes) if mode in regime.may_lose_value]

@@ -65,7 +65,8 @@ class RunState:
     def note_rounding(self, zero: Instant) -> None:
         """Store the first time from which rounding errors may matter, if any, in :attr:`rounded_beyond`.
 
-        This time is ``rounding.beyond``, in s after ``zero``; it is stored as a time of the scene.
+        The attribute :attr:`rounding` has this time as ``rounding.beyond``, in s after the instant ``zero``. It is
+        stored as a time on the clock of the scene.
         """
         if not self.rounded_beyond and self.rounding.beyond is not None:
             self.rounded_beyond.append(zero.after(self.rounding.beyond).high)

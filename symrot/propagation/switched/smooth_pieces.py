@@ -1,7 +1,7 @@
 """The smooth motion up to the next switch of sign, abs, .., in pieces: groups of consecutive steps of a stepper.
 
 Each piece has two forms: polynomials in time, and a function from times to states. A *window* is the interval of time
-that SciPy integrates at once; only then the caller searches it for a switch.
+that SciPy integrates at once; the caller searches it for a switch after it has been integrated whole.
 """
 
 from collections.abc import Callable, Iterator
@@ -38,7 +38,7 @@ class SteppedPieces:
 
     def __init__(self, run: RunState, regime: Regime, motion: SteppedMotion, rates: list[float]) -> None:
         if not np.isfinite(run.y).all():
-            raise IntegrationStopped(run.t, "its states are not finite there", run.end)
+            raise IntegrationStopped(run.t, "a component of its state is not a finite number there", run.end)
         start = (motion.library, rates, run.y, run.t, motion.tolerance)
         if motion.choice.method == "taylor":
             self.integration = taylor.integration(*start)
@@ -143,7 +143,7 @@ class SciPyPieces:
     def _judge_pace(self, t: float) -> None:
         """Raise IntegrationStopped if the motion, now at the time t, s, exceeds the limit of evaluations.
 
-        Do so also if the motion would exceed the limit by far before its end at its present pace.
+        Raise it early if, at the present pace, the whole motion would need far more evaluations than the limit allows.
         """
         from symrot.propagation.steppers.fallback import MAX_EVALUATIONS, PATIENCE
 
@@ -170,7 +170,8 @@ class SciPyPieces:
 def smooth_pieces(run: RunState, regime: Regime, rates: list[float]) -> SteppedPieces | SciPyPieces:
     """Return the computation of the smooth motion ``regime`` from the present state of ``run``.
 
-    Its method ``pieces`` yields successive intervals of this motion, each with polynomials and a function to states.
+    Its method ``pieces`` yields successive intervals of this motion. Each interval has polynomials of the states in
+    time, and a function from times to states.
     ``rates`` are the values of the parameters of the rates.
     """
     motion = regime.motion

@@ -117,11 +117,12 @@ class SwitchedSystem:
 
     @property
     def undecided(self) -> set[str]:
-        """The names of functions such as sign and abs, not floor, whose arguments depend on states and start at zero.
+        """The names of the functions whose value just after the start does not follow from the initial state alone.
 
-        The name of a function is the name of its mode, the number that replaces it in formulas.
+        The argument u of such a function, sign(u) or abs(u) but not floor(u), depends on states and is zero at the
+        start: the motion decides whether u becomes positive or negative. The name is that of the number that replaces
+        the function in formulas.
         """
-        # whether they start with 1 or -1 follows from the motion, not from the initial state alone
         return self._initial_modes[1]
 
     @cached_property

@@ -35,10 +35,10 @@ def create(path: Path, fill: Callable[[Path], None]) -> bool:
 
 
 def require_own(header: Header, path: Path, description: Callable[[], Mapping[str, Any]]) -> None:
-    """Raise InputError if the folder ``path`` no longer holds the sweep that ``header`` describes, in the same chunks.
+    """Raise InputError unless the folder ``path`` still has the results of the sweep that ``header`` describes.
 
-    ``description`` reads from the folder the identity of the sweep and the number of trajectories in a chunk, as for
-    :func:`symrot.sweeps.layout.continued`.
+    The number of trajectories in a chunk must be the same too. ``description`` reads the folder and returns the
+    settings of its sweep and this number, as for :func:`symrot.sweeps.layout.continued`.
     """
     # somebody may have removed the folder and begun another sweep there while this one runs
     rows = continued(header, path, description).rows

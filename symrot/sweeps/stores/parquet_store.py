@@ -36,12 +36,12 @@ DESCRIPTION, STATISTICS = "_sweep.json", "_statistics.parquet"  # readers of Par
 
 # A file gets its final name when it is complete, so that every file with such a name has all its rows.
 class ParquetStore:
-    """The store of a sweep in the folder ``path``; if it holds results of the same sweep, they are continued.
+    """The store of a sweep in the folder ``path``; if the folder has results of the same sweep, the sweep resumes.
 
     Raises
     ------
     InputError
-        If pyarrow is not installed, or if the path contains something else than results of the same sweep.
+        If pyarrow is not installed, or if the path contains anything other than results of the same sweep.
     """
 
     only_statistics = ""  # values cannot be removed from these files
@@ -74,7 +74,7 @@ class ParquetStore:
     def write(self, chunk: Chunk) -> None:
         """Store a chunk; if it is stored already, it is overwritten, which changes no values.
 
-        Raise InputError if the folder no longer holds this sweep, because somebody has begun another one in it.
+        Raise InputError if the folder no longer has the results of this sweep, because another sweep was begun in it.
         """
         require_own(self.header, self.path, self._description)
         n, times = chunk.stop - chunk.start, self.header.times
@@ -135,8 +135,9 @@ class ParquetStore:
     def finish(self, tables: list[Table], only_statistics: str) -> None:
         """Store the statistics ``tables`` at the end of a sweep.
 
-        Raise InputError if ``only_statistics`` is not empty: it then asks to keep statistics alone, but the values of
-        trajectories cannot be removed from Parquet files. Raise it also if the folder no longer holds this sweep.
+        ``only_statistics`` is a text that describes the statistics if these alone are to be kept, otherwise empty.
+        Raise InputError if it is not empty: the values of trajectories cannot be removed from Parquet files. Raise
+        InputError also if the folder no longer has the results of this sweep.
         """
         require_own(self.header, self.path, self._description)
         if tables:

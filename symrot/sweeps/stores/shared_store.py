@@ -1,8 +1,9 @@
 """Writing of chunks by workers on the machine of the client, so that they need not send the chunks to the client.
 
-The client is the process that runs a sweep and submits its chunks to workers. It offers them to write into its store:
-while it runs, it holds a file in memory with a mark, a text of its own. A worker writes only if it finds the mark in
-this file. Otherwise the client is on another machine or has ended, and the worker returns its chunk.
+The client is the process that runs a sweep and submits its chunks to workers. It lets the workers write into its store
+while it runs. It then keeps in memory a file with a mark, a text that no other client has, and sends the workers an
+*offer*: the path of this file, the mark, and a description of the store. A worker writes only if it finds the mark in
+the file. Otherwise the client is on another machine or has ended, and the worker returns its chunk.
 """
 
 import os
@@ -37,7 +38,7 @@ class Offer(NamedTuple):
 
     file: str
     mark: str
-    # device and index node of the store's folder, which differ for another folder of the same name in a container
+    # device and inode number of the store's folder, which differ for another folder of the same name in a container
     folder: tuple[int, int]
     # class, path and header of the store, pickled
     store: bytes
@@ -72,7 +73,7 @@ def offered(store: Store) -> Iterator[Offer | None]:
 
 
 def _folder(path: Path) -> tuple[int, int]:
-    """Return the device and the index node of a folder."""
+    """Return the numbers of the device and of the inode of a folder."""
     state = path.stat()
     return state.st_dev, state.st_ino
 
@@ -96,10 +97,11 @@ def _is_valid(offer: Offer) -> bool:
 
 
 def stored(chunk: Chunk, offer: Offer) -> Chunk | Written:
-    """Write a chunk into the store of an :class:`Offer`, and return its range of trajectories (:class:`Written`).
+    """Write a chunk into the store of the client, and return its range of trajectories (:class:`Written`).
 
-    Return the chunk itself if that is not possible: the client, the process that runs the sweep, then writes it, or
-    says why it cannot.
+    The client is the process that runs the sweep. Its ``offer`` describes the store, into which workers on the same
+    machine may write. Return the chunk itself if this worker cannot write: the client then writes it, or says why it
+    cannot.
     """
     try:
         store = _opened(offer.store, offer.mark) if _is_valid(offer) else None

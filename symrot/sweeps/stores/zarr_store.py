@@ -36,12 +36,12 @@ IDENTITY, ROWS, FINISHED, REMOVED = "symrot_sweep", "symrot_rows", "symrot_finis
 
 
 class ZarrStore:
-    """The store of a sweep in the folder ``path``; if it holds results of the same sweep, they are continued.
+    """The store of a sweep in the folder ``path``; if the folder has results of the same sweep, the sweep resumes.
 
     Raises
     ------
     InputError
-        If zarr is not installed, or if the path contains something else than results of the same sweep.
+        If zarr is not installed, or if the path contains anything other than results of the same sweep.
     """
 
     def __init__(self, path: Path, header: Header) -> None:
@@ -69,7 +69,7 @@ class ZarrStore:
     def write(self, chunk: Chunk) -> None:
         """Store a chunk; if it is stored already, it is overwritten, which changes no values.
 
-        Raise InputError if the folder no longer holds this sweep, because somebody has begun another one in it.
+        Raise InputError if the folder no longer has the results of this sweep, because another sweep was begun in it.
         """
         self._require_own()
         rows = slice(chunk.start, chunk.stop)
@@ -107,7 +107,8 @@ class ZarrStore:
     def finish(self, tables: list[Table], only_statistics: str) -> None:
         """Store the statistics ``tables`` at the end of a sweep.
 
-        Remove the values of inputs and outputs if ``only_statistics``, a description of the statistics, is not empty.
+        ``only_statistics`` is a text that describes the statistics if these alone are to be kept: the values of inputs
+        and outputs are then removed. It is empty if the values are kept too.
 
         Raises
         ------

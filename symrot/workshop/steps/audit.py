@@ -175,8 +175,10 @@ def _method(path: Path, data: Data) -> Method:
     except (InputError, KeyError, TypeError, AttributeError) as reason:
         raise CertificateError(f"{path}: expected a method that symrot knows: {reason}") from None
     assert not isinstance(method, SteadyRotations)
-    if order != method.order or data["method"] != method.formula:
+    if order != method.order:
         raise CertificateError(f"{path}: expected the order {method.order} of {method.name}, got {order}")
+    if data["method"] != method.formula:
+        raise CertificateError(f"{path}: expected the method {method.formula!r}, got {data['method']!r}")
     return method
 
 

@@ -30,7 +30,8 @@ def with_rates(reading: Reading) -> Reading:
     Raises
     ------
     InputError
-        If an integral over time without limits is in a line that is no equation with the change of a quantity.
+        If a line has an integral over time without limits, and does not equate this integral to the change of a
+        quantity.
     """
     lines, vectors, notes = [], dict(reading.vectors), list(reading.notes)
     for chain in reading.lines:
@@ -76,10 +77,11 @@ def _integrand(term: Node) -> Node | None:
 
 
 def _rate_of_change(terms: Sequence[Node], vectors: Mapping[str, bool]) -> tuple[Node, str] | None:
-    """Return the rate of change of a quantity from its change during a time, and the name of what changes.
+    """Return the rate of change of a quantity from its change during a time, and the name of the letter that changes.
 
     ``terms`` are the change as a sum, ``I*omega_2 - I*omega_1``, or as a product, ``I*Delta_omega``; both give
-    ``I*diff(omega, t)`` and omega. None if the terms are no change of a quantity.
+    ``I*diff(omega, t)`` and omega. ``vectors`` has the names of vectors. Return None if the terms are no change of a
+    quantity.
     """
     if len(terms) == 1:
         (term,) = terms

@@ -105,9 +105,11 @@ def _with_signs_of_products(assume: Sequence[str], stated: Context) -> tuple[lis
 
 
 def _complex_numbers(lines: Sequence[Chain], formulas: Sequence[Node]) -> dict[str, Node]:
-    """Return {"z": formula} for the complex numbers z that lines define by formulas with i, such as ``x + i*y``.
+    """Return {"z": formula} for the complex numbers z of a text.
 
-    If no line does, the formulas are ``Re_z + i*Im_z``; or they are i itself, for lines that only name i.
+    If lines define such numbers by formulas with i, such as ``z = x + i*y``, these formulas are returned. If the text
+    only gives another name to i, as the lines ``q = i`` and ``q^2 = -1`` do, return {"q": i}. Otherwise the formula of
+    a complex number z is ``Re_z + i*Im_z``.
     """
     unit = imaginary_unit(formulas)
     if unit is None:

@@ -244,11 +244,11 @@ def _with_entries(matrices: Sequence[tuple[str, Node]], relation: Relation) -> I
 def _with_vectors(
     relation: Relation, vectors: list[Vector], define: Sequence[tuple[str, Node]]
 ) -> tuple[Relation, list[Vector], bool]:
-    """Return a relation with ``eye(n)`` for the unit matrix I or 1, a list of vectors, and whether the relation was
-    changed.
+    """Return (relation, vectors, changed): a relation with ``eye(n)`` for the unit matrix I or 1, and its vectors.
 
-    The list has ``vectors`` and the names that the relation uses as vectors or inertia tensors, as b in
-    ``cross(a, b)``.
+    The list of vectors has ``vectors`` and the undefined names that the relation uses as vectors or inertia tensors,
+    such as b in ``cross(a, b)``. ``define`` are the definitions of the claim. "changed" says whether there was a unit
+    matrix.
     """
     # defined names are no new vectors
     named = {name for name, _ in define} | {vector.name for vector in vectors}
@@ -278,10 +278,12 @@ def _shapes(vectors: Sequence[Vector], define: Sequence[tuple[str, Node]]) -> di
 
 
 def _with_arrays(relation: Relation, vectors: Sequence[Vector], define: Sequence[tuple[str, Node]]) -> Quaternions:
-    """Return the quaternions, matrices and columns of an equation as a :class:`Quaternions`.
+    """Return an equation together with the quaternions, matrices and columns that it uses without a definition.
 
-    In the result, ``definitions`` holds the quaternions and matrices, ``vectors`` the names of the columns too, and
-    ``relation`` is the equation with ``dot(a, b)`` for ``a^T b``.
+    ``vectors`` and ``define`` are the vectors and definitions that the claim already has. In the result,
+    ``definitions`` holds the components of the quaternions and the entries of the matrices. ``vectors`` has the names
+    of the columns, and of the vectors that are multiplied by quaternions. ``relation`` is the equation with
+    ``qmul(q, p)`` for the product of quaternions and ``dot(a, b)`` for ``a^T b``.
     """
     known = {name for name, _ in define}
     names = {vector.name for vector in vectors}

@@ -54,10 +54,10 @@ class Range:
             setattr(self, f"{name}_closed", closed and getattr(self, f"{name}_closed"))
 
     def sign_of(self, root: Expr) -> tuple[int, bool]:
-        """Return the sign of q - ``root`` for q in this range, and whether it may be zero: (1, True) for q >= 2 and
-        root 2.
+        """Return (sign, zero) for the difference q - ``root`` of a quantity q in this range.
 
-        (0, True) if the sign is not known.
+        The sign is 1 or -1, and zero says whether the difference may be zero: (1, True) for q >= 2 and root 2. Return
+        (0, True) if the sign is unknown.
         """
         for bound, closed, sign in ((self.low, self.low_closed, 1), (self.high, self.high_closed, -1)):
             distance = None if bound is None else sign * (bound - root)
@@ -247,8 +247,9 @@ class Conditions:
     def _lies_between(self, bound: Bound, factors: Mapping[Expr, int], direction: int) -> bool:
         """Return whether a condition on a product excludes the root of ``bound``: (x - 1)*(x + 1) >= 0 excludes x = 0.
 
-        The product must have two linear factors in the same quantity, here x, and the condition must fail between their
-        roots, where the root of ``bound`` is. It is on ``direction``, 1 or -1, times the product of ``factors``.
+        The condition says that ``direction``, 1 or -1, times the product of ``factors`` is not negative. The product
+        must have two linear factors in the same quantity, here x. The root of ``bound`` must be between their roots,
+        and the condition must fail there.
         """
         pair = [bound_of(factor) for factor in factors]
         if len(pair) != 2 or any(other.quantity != bound.quantity for other in pair):
@@ -257,9 +258,10 @@ class Conditions:
         return outside and bool(((bound.root - pair[0].root) * (bound.root - pair[1].root)).is_negative)
 
     def grants(self, quantity: Expr, own: Range) -> bool:
-        """Return whether the conditions ``nonzero`` and ``products`` imply that a cosine is in the range ``own``.
+        """Return whether other conditions imply that a cosine is in the range ``own``, which then need not be printed.
 
-        Then this range need not be printed. For instance, cos(u) > -1 holds if cos(u/2) must not be zero. False if
+        Every cosine is between -1 and 1. The attributes ``nonzero`` and ``products`` may also say that cos(u/2) is not
+        zero, which implies cos(u) > -1, or that sin(u/2) is not zero, which implies cos(u) < 1. Return False if
         ``quantity`` is no cosine.
         """
         if not isinstance(quantity, cos):

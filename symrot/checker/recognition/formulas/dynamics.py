@@ -62,8 +62,10 @@ ACTING: tuple[tuple[str, str, dict[str, FieldPattern]], ...] = (
     ("damping", "linear damping", {"linear": VECTOR, "quadratic": ZERO}),
     ("spring", "torsional spring", {"stiffness": FREE, "attitude": (FREE,) * 4}),
 )  # fmt: skip
-"""Torques with a known formula: triples (kind in symrot's table of torques, words for the formula's name, fields). The
-fields map each constant of the torque to 0, -1 or FREE: a free constant is a symbol in the formula."""
+"""Torques with a known formula: triples (kind in symrot's table of torques, words for the formula's name, fields).
+
+The fields map each constant of the torque to a pattern: FREE for a symbol in the formula, ZERO for 0. A vector has one
+pattern for each component: VECTOR is any vector, DOWN is the vector (0, 0, -1)."""
 
 
 def torques() -> Iterator[Named]:

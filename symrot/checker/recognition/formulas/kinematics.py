@@ -277,10 +277,10 @@ def _euler_angles() -> Iterator[Named]:
 
 
 def _root_of_squares(matrix: Matrix, places: Sequence[tuple[int, int]], square: Expr) -> Expr:
-    """Return the root of the sum of squares of some rotation matrix entries, as ``sqrt(R_11^2 + R_21^2)``.
+    """Return the root of the sum of squares of some rotation matrix entries, such as ``sqrt(R_11^2 + R_21^2)``.
 
-    ``places`` are their indices (row, column), from 0. ``matrix`` has the same entries as functions of Euler angles:
-    assert that the sum of their squares there equals ``square``.
+    ``places`` are the indices (row, column) of these entries, from 0. ``matrix`` is the rotation matrix as a function
+    of Euler angles. Assert that the sum of the squares of its entries at these places equals ``square``.
     """
     total = sum(matrix[place] ** 2 for place in places)
     (outer,) = {factor for factor in symbols.angles if not square.has(factor) and total.has(factor)}

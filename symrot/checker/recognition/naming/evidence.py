@@ -24,13 +24,13 @@ With fewer quantities, an edited formula, such as one with another sign, may equ
 """
 
 MANY_LETTERS = 5
-"""The smallest number of letters in a formula that is usually called faulty because one change makes it a known one, if
-the quantity's name has no usual meaning. A formula with fewer letters may be right for something else.
+"""The smallest number of letters in a formula that is usually reported as faulty although its quantity's name has no
+usual meaning. One change turns such a formula into a known one. With fewer letters, it may be right for something else.
 """
 
 MANY_OCCURRENCES = 4
-"""The smallest number of letters, each counted as often as it occurs, in a claim's matrix that is called faulty because
-one change makes it a known matrix. A claim's matrix with fewer letters may be a right formula for something else.
+"""A claim's matrix that one change turns into a known matrix is reported as faulty if it has at least this many
+letters. A letter counts as often as it occurs. With fewer letters, the matrix may be right for something else.
 """
 
 SAFE_BY_UNIT = ("exponent", "factor", "wrong_symbol", "extra_term", "missing_term")
@@ -157,7 +157,10 @@ def _is_stated(claim: Claim, named: NamedFormula, near: Near) -> bool:
 
 
 def _are_letters_stated(claim: Claim, letters: set[str]) -> bool:
-    """Return whether the context states the meanings of two or more letters, and the others are moments of inertia."""
+    """Return whether the context states the meanings of two or more ``letters``, and no other meaning is in doubt.
+
+    A letter without a stated meaning is in no doubt if it is a name of a moment of inertia, such as I_x.
+    """
     stated = {letter for letter in letters if claim.context.meaning_of(letter) is not None}
     return len(stated) > 1 and all(map(MOMENT.fullmatch, letters - stated))
 
