@@ -385,7 +385,8 @@ def propagate_ensemble(
     ``auto`` uses the closed form of each motion that has one; the samples then have the same bits as those of
     :func:`symrot.propagate`. For other motions, and where numeric integration is known to be faster
     (:func:`symrot.ensemble.exact.choose`), it uses Taylor series with one trajectory in each SIMD lane. Motions are
-    computed one by one if a torque jumps, bends or has no Taylor series, or is a formula that may have a short pulse.
+    computed one by one if a torque jumps, bends or has no Taylor series, or is a formula that may have a short pulse. A
+    motion that reaches rest under quadratic damping has no Taylor series there and is computed by DOP853.
 
     Examples
     --------

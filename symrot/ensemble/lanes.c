@@ -5,6 +5,7 @@
  * Included after library.h, lanes.h, an emitted system and series.h, in one translation unit. The system defines
  *     SYMROT_STATES, SYMROT_PARAMETERS   numbers of states N and parameters
  *     SYMROT_ORDER                       order of the series, even
+ *     SYMROT_ROOTS                       number of square roots, such as |omega|, whose series follow those of the states
  *     SYMROT_BLOCKS, SYMROT_EDGES, SYMROT_SCALES   blocks of states with separate error norms, as in taylor.c
  *     SYMROT_CONSTANTS, symrot_constants, symrot_jet           constants from parameters; coefficients of the states
  * C99; no malloc, no globals, no input or output, reentrant.
@@ -19,6 +20,7 @@ extern "C" {
 
 #define L SYMROT_LANES
 #define N SYMROT_STATES
+enum { SYMROT_SERIES = SYMROT_STATES + SYMROT_ROOTS };
 
 /* The task of a thread: `legs` parts of motions, each from t0 to one side of it. */
 typedef struct {
@@ -131,6 +133,29 @@ static inline symrot_v symrot_step_log(symrot_v (*x)[SYMROT_ORDER + 1], symrot_v
     }
     return symrot_larger(shortest, V_ALL(-60.0));
 }
+
+#if SYMROT_ROOTS
+/*
+ * Return a step of at most s units, shortened in the `chosen` lanes so that no square root falls below a sixteenth of
+ * its value at the start. A root that reaches zero has no series there: where |omega| is zero for an instant, its series
+ * goes on to negative values.
+ */
+static SYMROT_APART symrot_v symrot_before_roots(symrot_v (*x)[SYMROT_ORDER + 1], symrot_v s, symrot_bits chosen)
+{
+    for (int tries = 0; tries < 200; ++tries) {
+        symrot_bits near = V_NO_BITS;
+        for (int i = N; i < SYMROT_SERIES; ++i) {
+            symrot_v least = V_ALL(0.0);  /* only the terms that are negative, for s > 0 */
+            for (int n = SYMROT_ORDER - 1; n > 0; --n)
+                least = V_MUL(V_ADD(least, symrot_smaller(x[i][n], V_ALL(0.0))), s);
+            near |= chosen & V_LESS(V_FMA(x[i][0], V_ALL(0.9375), least), V_ALL(0.0));
+        }
+        if (!V_ANY(near)) break;
+        s = V_SELECT(near, V_MUL(s, V_ALL(0.75)), s);
+    }
+    return s;
+}
+#endif
 
 /* Return the tail allowed to a step of about one unit; see taylor.c. */
 static inline symrot_v symrot_allowed(double tail, symrot_v pace, symrot_v unit)
@@ -286,7 +311,7 @@ SYMROT_EXPORT double symrot_lanes_carry(double a, double b)
 SYMROT_EXPORT void symrot_lanes_jet(double t, const double *y, const double *p, double unit, int64_t order, double *out)
 {
     double values[SYMROT_CONSTANTS];
-    symrot_v c[SYMROT_CONSTANTS], x[N][SYMROT_ORDER + 1];
+    symrot_v c[SYMROT_CONSTANTS], x[SYMROT_SERIES][SYMROT_ORDER + 1];
     symrot_constants(p, values);
     for (int i = 0; i < SYMROT_CONSTANTS; ++i) c[i] = V_ALL(values[i]);
     EACH_STATE(i) x[i][0] = V_ALL(y[i]);
@@ -310,7 +335,7 @@ SYMROT_EXPORT void symrot_lanes_clear(symrot_lanes *lanes)
  */
 SYMROT_EXPORT int symrot_lanes_run(symrot_lanes *lanes, symrot_job *job, int64_t attempts)
 {
-    symrot_v c[SYMROT_CONSTANTS], x[N][SYMROT_ORDER + 1], carry[N], y1[N];
+    symrot_v c[SYMROT_CONSTANTS], x[SYMROT_SERIES][SYMROT_ORDER + 1], carry[N], y1[N];
     symrot_v t = V_ALL(0.0), low = t, unit, stop, side, allowed, steps, jets, halvings, tiny;
     symrot_bits active;
     int changed = 1, entered[L], busy[L];
@@ -343,11 +368,20 @@ SYMROT_EXPORT int symrot_lanes_run(symrot_lanes *lanes, symrot_job *job, int64_t
         jets = V_ADD(jets, V_ALL(1.0));
 
         const symrot_bits finite = symrot_finite(x, SYMROT_ORDER);
-        const symrot_v logarithm = symrot_step_log(x, allowed, symrot_size_of(unit)), left = V_SUB(V_SUB(stop, t), low);
+        symrot_v logarithm = symrot_step_log(x, allowed, symrot_size_of(unit));
+        const symrot_v left = V_SUB(V_SUB(stop, t), low);
         symrot_v s = symrot_exp2(logarithm), h = V_MUL(s, unit);
-        const symrot_bits at_stop = ~V_LESS(V_MUL(V_SUB(V_MUL(V_ALL(1.01), h), left), side), V_ALL(0.0));
+        symrot_bits at_stop = ~V_LESS(V_MUL(V_SUB(V_MUL(V_ALL(1.01), h), left), side), V_ALL(0.0));
         h = V_SELECT(at_stop, left, h);
         s = V_SELECT(at_stop, V_DIV(h, unit), s);
+#if SYMROT_ROOTS
+        const symrot_v held = symrot_before_roots(x, s, active & finite);
+        const symrot_bits shorter = V_LESS(held, s);
+        at_stop &= ~shorter;
+        s = held;
+        h = V_SELECT(shorter, V_MUL(s, unit), h);
+        logarithm = V_SELECT(shorter, symrot_log2(s, V_ALL(1.0)), logarithm);
+#endif
         const symrot_v least = V_ADD(tiny, V_MUL(V_ALL(4.0*DBL_EPSILON), symrot_size_of(t)));
         const symrot_bits stuck = ~(at_stop | V_LESS(least, symrot_size_of(h)));
         const symrot_bits stepping = active & finite & ~stuck;

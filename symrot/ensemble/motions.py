@@ -154,12 +154,28 @@ def _follow(problem: Problem, method: str, rows: Integers) -> Followed:
     elif stepped:
         chosen = method if method != "auto" else _stepping_method(problem)
         stepper = _Stepped(problem, stepped)
-        outcome = STEPPERS[chosen.partition(":")[0]](stepper, chosen)
+        outcome, again = STEPPERS[chosen.partition(":")[0]](stepper, chosen), list[int]()
+        if method == "auto" and chosen == "taylor" and non_smooth_torque(problem.plan):
+            again = [place for place, message in enumerate(outcome.messages) if message]
+        if again:
+            outcome = _replaced(outcome, again, _dop853(_Stepped(problem, [stepped[place] for place in again]), ""))
         stepper.read(outcome.states, omega, quaternion)
         for place, i in enumerate(stepped):
             methods[i], messages[i], warnings[i] = chosen, outcome.messages[place], outcome.warnings[place]
+        for place in again:
+            methods[stepped[place]] = "dop853"
         steps[stepped], evaluations[stepped] = outcome.steps, outcome.evaluations
     return Followed(omega, quaternion, tuple(methods), tuple(messages), tuple(warnings), steps, evaluations)
+
+
+def _replaced(outcome: lanes.Outcome, places: Sequence[int], other: lanes.Outcome) -> lanes.Outcome:
+    """Return an outcome in which the results of the motions ``places`` are those of ``other``, in the same order."""
+    messages, warnings = list(outcome.messages), list(outcome.warnings)
+    for k, place in enumerate(places):
+        messages[place], warnings[place] = other.messages[k], other.warnings[k]
+        outcome.states[place] = other.states[k]
+        outcome.steps[place], outcome.evaluations[place] = other.steps[k], other.evaluations[k]
+    return outcome._replace(messages=tuple(messages), warnings=tuple(warnings))
 
 
 def _switched(
@@ -209,9 +225,8 @@ def _stepping_method(problem: Problem) -> str:
         return "constant"  # nothing changes
     if library.missing():
         return "scipy"
-    rough = has_formulas(problem.plan) and non_smooth_torque(
-        problem.plan
-    )  # lanes can step drag, which has a kink at rest
+    # lanes can step drag, which has a kink at rest; the motions that reach it are stepped again by dop853
+    rough = has_formulas(problem.plan) and non_smooth_torque(problem.plan)
     return "dop853" if rough or taylor.refusal(scene_kernel(problem.plan).rates) else "taylor"
 
 
@@ -300,8 +315,11 @@ class _Stepped:
             needed |= names(node) if name in needed else set()
         return tuple([(name, node) for name, node in parameters if name in needed])
 
-    def one_by_one(self, integrate: Callable[[int, Floats], tuple[Floats, Stats]]) -> lanes.Outcome:
-        """Integrate all trajectories one after the other; ``integrate(k, times)`` returns states and cost of one."""
+    def one_by_one(self, method: str, integrate: Callable[[int, Floats], tuple[Floats, Stats]]) -> lanes.Outcome:
+        """Integrate all trajectories one after the other; ``integrate(k, times)`` returns states and cost of one.
+
+        ``method`` is the name of the method, for warnings.
+        """
         samples = self.times.shape[-1]
         states = np.full((len(self.chosen), samples, len(self.plan.states)), np.nan)
         steps, evaluations = (np.zeros(len(self.chosen), dtype=np.int64) for _ in range(2))
@@ -320,7 +338,8 @@ class _Stepped:
             warnings.append(())
             if stats is not None:
                 steps[k], evaluations[k] = stats.accepted, stats.evaluations
-                warnings[k] = tuple(map(rounding_warning, stats.later(self.epoch).rounded_beyond))
+                beyond = stats.later(self.epoch).rounded_beyond
+                warnings[k] = tuple([rounding_warning(t, method) for t in beyond])
         return lanes.Outcome(states, steps, evaluations, tuple(messages), tuple(warnings))
 
 
@@ -344,7 +363,7 @@ def _one_by_one(stepped: _Stepped) -> lanes.Outcome:
     def integrate(k: int, times: Floats) -> tuple[Floats, Any]:
         return taylor.integration(path, stepped.p[k], stepped.y[k], stepped.t0, problem.tolerance).sample(times)
 
-    return stepped.one_by_one(integrate)
+    return stepped.one_by_one("taylor", integrate)
 
 
 def _dop853(stepped: _Stepped, method: str) -> lanes.Outcome:
@@ -355,7 +374,7 @@ def _dop853(stepped: _Stepped, method: str) -> lanes.Outcome:
         arguments = path, stepped.p[k], stepped.y[k], stepped.t0, problem.tolerance
         return dop853.integration(*arguments, clock=stepped.clock(k)).sample(times)
 
-    return stepped.one_by_one(integrate)
+    return stepped.one_by_one("dop853", integrate)
 
 
 def _scipy(stepped: _Stepped, method: str) -> lanes.Outcome:
@@ -373,7 +392,7 @@ def _scipy(stepped: _Stepped, method: str) -> lanes.Outcome:
         options = fallback.Options(method, blocks, scales, deviations=deviations, clock=clock)
         return fallback.integrate(*start, times, problem.tolerance, options)
 
-    return stepped.one_by_one(integrate)
+    return stepped.one_by_one(method, integrate)
 
 
 def _constant(stepped: _Stepped, method: str) -> lanes.Outcome:

@@ -22,12 +22,12 @@ from symrot.formula.program import Program
 from symrot.planning.general_structure import constants_of, switched
 from symrot.planning.plan import Plan
 from symrot.planning.scene_kernel import EPOCH
+from symrot.propagation.compiled_models import needs_bounds
 from symrot.propagation.sensitivities.libraries import (
     ORDER,
     RATES,
     TOLERANCE,
     MotionLibrary,
-    needs_bounds,
     rates_of,
     variation_source,
 )

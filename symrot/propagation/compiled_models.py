@@ -23,6 +23,7 @@ from symrot.planning.plan import Plan
 from symrot.planning.scene_kernel import SceneKernel
 from symrot.propagation.steppers import taylor
 from symrot.propagation.steppers.dop853 import DENSE_ORDER, translation_unit
+from symrot.propagation.steppers.smoothness import non_smooth_torque
 
 if TYPE_CHECKING:
     from symrot.propagation.enclosures.step_limit import Deviations
@@ -38,6 +39,7 @@ __all__ = [
     "kernel_key",
     "library_source",
     "motion_library",
+    "needs_bounds",
     "scene_kernel",
     "taylor_library",
 ]
@@ -152,7 +154,7 @@ def taylor_library(plan: Plan, kernel: SceneKernel, tolerance: float, projected:
     source = library.fetch(key)
     if source is None:
         invariants = invariant_source(kernel, plan.states) if projected else ""
-        source = taylor.translation_unit(kernel.rates, *error_blocks(plan), order, invariants, has_formulas(plan))
+        source = taylor.translation_unit(kernel.rates, *error_blocks(plan), order, invariants, needs_bounds(plan))
         library.store(key, source)
     return library.build(source, "taylor", taylor.FLAGS)
 
@@ -197,6 +199,15 @@ def has_formulas(plan: Plan) -> bool:
     """Return whether a torque of the scene, given by its plan, has formulas."""
     # the steps then need limits, because a long step may miss a short pulse
     return any(plan.structure.formula_torques)
+
+
+def needs_bounds(plan: Plan) -> bool:
+    """Return whether bounds of the rates must limit steps by Taylor series: a long one may pass a pulse or a corner.
+
+    A corner: where quadratic damping stops a rotation for an instant, the series of ``|omega|`` goes on to negative
+    values.
+    """
+    return has_formulas(plan) or bool(non_smooth_torque(plan))
 
 
 def grows_late(plan: Plan) -> bool:

@@ -26,7 +26,14 @@ from symrot.kinematics import conversions
 from symrot.planning.plan import Plan
 from symrot.planning.scene_kernel import KernelRecord, SceneKernel, bind
 from symrot.propagation import time_shift
-from symrot.propagation.compiled_models import ATTITUDE_SCALE, RATE_SCALE, has_formulas, kernel_key, scene_kernel
+from symrot.propagation.compiled_models import (
+    ATTITUDE_SCALE,
+    RATE_SCALE,
+    has_formulas,
+    kernel_key,
+    needs_bounds,
+    scene_kernel,
+)
 from symrot.propagation.method import Choice
 from symrot.propagation.motions.motion import Motion
 from symrot.propagation.motions.setup import Setup
@@ -147,7 +154,7 @@ class EulerMotion(Motion):
         edges, scales = [0, *([count] if count else []), count + 3], [RATE_SCALE] * (count > 0) + [ATTITUDE_SCALE]
         if self.choice.method == "taylor":
             order = taylor.order_for(self.tolerance, kernel.rates)
-            text = taylor.translation_unit(kernel.rates, edges, scales, order, enclosed=has_formulas(plan))
+            text = taylor.translation_unit(kernel.rates, edges, scales, order, enclosed=needs_bounds(plan))
         else:
             sizes = count + 3, len(kernel.rate_parameters)
             bounds = dop853.NO_ENCLOSURE

@@ -5,6 +5,7 @@ import math
 import numpy as np
 import pytest
 
+import symrot
 from symrot.errors import InputError, PropagationError
 from symrot.propagation import progress
 from symrot.propagation.propagate import propagator
@@ -46,6 +47,25 @@ def test_the_fallback_means_the_same_by_a_tolerance(name, method, tolerance):
     )
     assert error(states, taylor(name)) < 20 * tolerance
     assert stats.evaluations > stats.accepted > 0
+
+
+@pytest.mark.parametrize("method", ["scipy:LSODA", "scipy:DOP853"])
+def test_a_tolerance_below_the_rounding_errors_of_the_steps_gives_a_warning(method):
+    """The motion of a free body is off by less than 5 tolerances, or a warning says that it may be off by more."""
+    body = {"body": {"principal": [1, 2, "5/2"]}, "initial": {"omega": ["1/10", "3/10", 1]}, "span": {"t": [0, 10]}}
+    content = {"schema": 1, **body, "output": {"quantities": ["omega", "quaternion"]}}
+    exact = symrot.propagate(content, method="exact", t=[-5, 5, 10])
+    warned = []
+    for tolerance in (1e-15, 1e-14, 1e-13, 1e-12, 1e-10):
+        found = symrot.propagate(content, method=method, t=[-5, 5, 10], tolerance=tolerance)
+        apart = max(abs(found.omega - exact.omega).max(), abs(found.quaternion - exact.quaternion).max())
+        assert apart < 5 * tolerance or found.warnings
+        if found.warnings:
+            warned.append(tolerance)
+            assert "rounding errors, in the steps of SciPy" in found.warnings[0]
+    assert 1e-15 in warned and 1e-10 not in warned
+    many = symrot.propagate_ensemble(content, omega=[[0.1, 0.3, 1]], t=[5, 10], method=method, tolerance=1e-15)
+    assert "rounding errors, in the steps of SciPy" in many.warnings[0][0]
 
 
 def test_the_fallback_samples_and_records_as_the_stepper_does():

@@ -72,6 +72,7 @@ def lane_definitions(program: Program, edges: Sequence[int], scales: Sequence[fl
             f"#define SYMROT_STATES {len(system.states)}",
             f"#define SYMROT_PARAMETERS {len(system.parameters)}",
             f"#define SYMROT_ORDER {order}",
+            f"#define SYMROT_ROOTS {len(_roots(system))}",
             f"#define SYMROT_BLOCKS {len(scales)}",
             f"#define SYMROT_EDGES {{{', '.join(map(str, edges))}}}",
             f"#define SYMROT_SCALES {{{', '.join(repr(float(scale)) for scale in scales)}}}",
@@ -103,6 +104,7 @@ class _Jet:
         # in C, v{i} is the newest coefficient of series i, and u{i} the array of all (x[..] for a state)
         self.system, self.series = system, system.series
         self.state = {i: s.number for i, s in enumerate(self.series) if s.rule == "state"}
+        self.roots = {i: place for place, i in enumerate(_roots(system), start=len(system.states))}
         self.constants: dict[Node, int] = {}
         self.slots: list[Slot] = []
         self.slot_of: dict[int, tuple[int, int]] = {}  # series -> its sign in its slot, and the index of the slot
@@ -330,6 +332,8 @@ class _Jet:
             lines += self.coefficient(i, n, stage, sums)
             if i in self.stored:
                 lines.append(f"u{i}[{n}] = v{i};")
+            if i in self.roots:
+                lines.append(f"x[{self.roots[i]}][{n}] = v{i};")
         following = {"0": "1", "1": "2", "n": "n + 1", "m": "m + 1"}[n]
         lines.append(f"const symrot_v step = V_MUL(unit, V_ALL(symrot_inverse[{following}]));")
         for s in self.system.rates:
@@ -474,13 +478,21 @@ class _Jet:
             *_indented(["(void)p;", "c[0] = 0.0;" if not values else "", *values]),
             "}",
             "",
-            "/* Fill x[i][1] to x[i][order], order even, from x[i][0], in powers of the unit of time of each lane. */",
+            "/*",
+            " * Fill x[i][1] to x[i][order], order even, from x[i][0], in powers of the unit of time of each lane. The",
+            " * rows after those of the states receive coefficients 0 to order - 1 of the square roots.",
+            " */",
             "static SYMROT_APART void symrot_jet(const symrot_v *SYMROT_RESTRICT c, symrot_v t, symrot_v t_low,",
             "    symrot_v unit, int64_t order, symrot_v (*SYMROT_RESTRICT x)[SYMROT_ORDER + 1])",
             "{",
             *_indented(body),
             "}",
         ]) + "\n"  # fmt: skip
+
+
+def _roots(system: Recurrences) -> list[int]:
+    """Return the indices of the series that are square roots, such as that of ``|omega|``."""
+    return [i for i, s in enumerate(system.series) if s.rule == "root"]
 
 
 def _plus(value: str, sign: int, factors: str) -> str:

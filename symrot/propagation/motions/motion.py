@@ -83,7 +83,7 @@ class Motion(ABC):
                 f"{math.ulp(t):.1e} s apart, may change the motion by more than the tolerance; choose the origin of "
                 "time, t = 0, nearer to the motion, or a larger tolerance"
             )
-        return rounding_warning(t)
+        return rounding_warning(t, self.choice.method)
 
     @cached_property
     def rate_parameters(self) -> list[float]:

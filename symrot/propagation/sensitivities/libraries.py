@@ -21,13 +21,13 @@ from symrot.formula.switches import STATES
 from symrot.formula.tree import Node
 from symrot.planning.plan import Plan
 from symrot.planning.scene_kernel import Parameters
-from symrot.propagation.compiled_models import has_formulas, kernel_key
+from symrot.propagation.compiled_models import has_formulas, kernel_key, needs_bounds
 from symrot.propagation.sensitivities.corners import places_within, rests_at_corner
 from symrot.propagation.steppers import dop853, taylor
 from symrot.propagation.steppers.integration_stopped import IntegrationStopped
 from symrot.propagation.steppers.smoothness import non_smooth_torque
 
-__all__ = ["ORDER", "RATES", "TOLERANCE", "MotionLibrary", "needs_bounds", "rates_of", "variation_source"]
+__all__ = ["ORDER", "RATES", "TOLERANCE", "MotionLibrary", "rates_of", "variation_source"]
 
 Floats = NDArray[np.float64]
 RATES = 3  # the first states are angular velocities
@@ -113,11 +113,6 @@ def variation_source(
             raise InputError(f"{plan.scene.name}: sensitivities: {reason}") from None
         library.store(key, text)
     return text
-
-
-def needs_bounds(plan: Plan) -> bool:
-    """Return whether bounds of the rates must limit the steps: a long step may pass over a pulse or a corner."""
-    return has_formulas(plan) or bool(non_smooth_torque(plan))
 
 
 class MotionLibrary:

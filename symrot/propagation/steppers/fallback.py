@@ -83,6 +83,10 @@ MAX_BROKEN = 1000  # derivatives that are not finite, before the motion stops
 _NODES = 0.5 - 0.5 * np.cos(np.pi * np.arange(1, FIT_ORDER + 1) / FIT_ORDER)  # Chebyshev points of a step
 # The matrix converts changes of the states at these points to the coefficients of the polynomial.
 _FIT = np.linalg.inv(_NODES[:, None] ** np.arange(1, FIT_ORDER + 1))
+ROUNDED_STEP = 2.0**-51  # relative rounding error of a step, of either sign
+# Relative error by which a step of LSODA adds to those before, whatever its tolerance. Measured against closed forms in
+# 500 to 65 000 steps at tolerances from 1e-15 to 1e-12: 0.8 to 3.5 times 2^-52.
+LSODA_DRIFT = 2.0**-50
 SMALLEST_RTOL = 100 * float(np.finfo(float).eps)  # the smallest relative tolerance that SciPy accepts
 
 
@@ -436,9 +440,8 @@ class _Integration:
                 longest = abs(proven)
                 solver = begin(now, y, longest)
                 continue
-            if self.final and self.deviations:
-                errors = self.deviations.rounding_errors(before, y.tolist())
-                self.sums[-1].add(before, abs(step) * max(errors[self.blocks[0][0]], default=0.0), self.size)
+            if self.final:
+                self._add_rounding(before, y, abs(step))
             self.steps += 1
             if after != before:
                 times.append(after)
@@ -449,6 +452,14 @@ class _Integration:
                     solver = begin(solver.t, solver.y.copy(), longest)
                 else:  # the other methods read it before every step
                     solver.max_step = longest
+
+    def _add_rounding(self, t: float, y: Floats, length: float) -> None:
+        """Add the rounding errors of a step of ``length``, s, that begins with the states ``y`` at the time ``t``."""
+        error, drift = ROUNDED_STEP * self.size, LSODA_DRIFT * self.size if self.method == "LSODA" else 0.0
+        if self.deviations:
+            errors = self.deviations.rounding_errors(t, y.tolist())
+            error = math.hypot(error, length * max(errors[self.blocks[0][0]], default=0.0))
+        self.sums[-1].add(t, error, self.size, drift)
 
     def _move_clock(self, clock: Clock, now: float) -> float:
         """Move the epoch by ``now``, s, to the present time; return the rounding error of the new epoch, s."""

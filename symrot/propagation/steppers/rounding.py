@@ -1,4 +1,4 @@
-"""The sum of the rounding errors that formulas with the time, such as ``t**2 - 25``, cause in the torques of a motion.
+"""The sum of the rounding errors of a motion: from formulas with the time, such as ``t**2 - 25``, and in SciPy's steps.
 
 Each direction of time, after and before the start, has its own sum.
 """
@@ -20,6 +20,8 @@ class RoundingSum:
         Error of the whole motion to aim for.
     squares : float
         Sum of the squares of the bounds: errors of different steps are independent.
+    drift : float
+        Sum of the bounds of errors that all have the same sign.
     size : float
         Largest size of the block of states so far, to which the tolerance is relative.
     beyond : float or None
@@ -27,17 +29,19 @@ class RoundingSum:
     """
 
     def __init__(self, tolerance: float) -> None:
-        self.tolerance, self.squares, self.size = tolerance, 0.0, 0.0
+        self.tolerance, self.squares, self.drift, self.size = tolerance, 0.0, 0.0, 0.0
         self.beyond: float | None = None
 
-    def add(self, t: float, error: float, size: float) -> None:
+    def add(self, t: float, error: float, size: float, drift: float = 0.0) -> None:
         """Add to the sum the rounding error of a step at the time t, s, which is at most ``error``.
 
-        ``size`` is the size of the states in the step. The sum is compared with the tolerance times the largest size.
+        ``size`` is the size of the states in the step, and ``drift`` a further error that has the same sign in every
+        step. The sum is compared with the tolerance times the largest size.
         """
         self.squares += error * error
+        self.drift += drift
         self.size = max(self.size, size)
-        if self.beyond is None and math.sqrt(self.squares) > WARNED * self.tolerance * self.size:
+        if self.beyond is None and math.sqrt(self.squares) + self.drift > WARNED * self.tolerance * self.size:
             self.beyond = t
 
     def fields(self) -> dict[str, float]:

@@ -44,8 +44,9 @@ class Stats(NamedTuple):
     switchings : tuple of Switching
         The functions that switch, with their times.
     rounded_beyond : tuple of float
-        Times, s, beyond which the rounding of the time in a torque may move the motion by more than the tolerance: at
-        most one time on each side of the start. Empty if the rounding does not matter.
+        Times, s, beyond which the rounding of the time in a torque, or of the steps of a method of SciPy, may move the
+        motion by more than the tolerance: at most one time on each side of the start. Empty if the rounding does not
+        matter.
 
     Examples
     --------
@@ -71,11 +72,16 @@ class Stats(NamedTuple):
         return self._replace(rounded_beyond=tuple([t + epoch for t in self.rounded_beyond]))
 
 
-def rounding_warning(t: float) -> str:
-    """Return a sentence that warns of errors beyond the time t, s, of a motion under formulas that contain the time.
+def rounding_warning(t: float, method: str) -> str:
+    """Return a sentence that warns of rounding errors of a motion beyond the time t, s, of ``Stats.rounded_beyond``.
 
-    t is a time of ``Stats.rounded_beyond``.
+    They are errors of formulas that contain the time and, if ``method`` is a method of SciPy, errors of its steps.
     """
+    if method.startswith("scipy"):
+        return (
+            f"beyond t = {t!r} s rounding errors, in the steps of SciPy or in a formula that contains the time, may "
+            "change the motion by more than the tolerance; choose a larger tolerance, or the method taylor or dop853"
+        )
     return (
         f"beyond t = {t!r} s the rounding of the torque, a formula that contains the time, may change the motion by "
         "more than the tolerance; choose a larger tolerance"
