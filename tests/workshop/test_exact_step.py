@@ -312,6 +312,8 @@ def test_boxes_beyond_the_range_of_the_bounds_are_refused(box, message):
     ("tumbling_prism", BOX, "middle axis"), ("tumbling_prism", {"dt": (0, 1)}, "--box omega_1=LOW:HIGH"),
     ("heavy_top_loops", BOX, "does not bound the errors of the exact step of a heavy top"),
     ("tumbling_prism", {**WOBBLE, "omega_3": (1, 1.2), "omega_1": (0, 0)}, "middle axis"),
+    ("tumbling_prism", {"omega_1": (0.1, 0.1), "omega_2": (0.1, 0.1), "omega_3": (5, 5), "dt": (0, 1)},
+     r"got omega near \(0.1, 0.1, 5\), where symrot finds no bound"),
 ])  # fmt: skip
 def test_boxes_without_bounds_are_refused(monkeypatch, scene, box, message):
     monkeypatch.setattr(exact, "CHECKED", 1)

@@ -84,8 +84,8 @@ _NODES = 0.5 - 0.5 * np.cos(np.pi * np.arange(1, FIT_ORDER + 1) / FIT_ORDER)  # 
 # The matrix converts changes of the states at these points to the coefficients of the polynomial.
 _FIT = np.linalg.inv(_NODES[:, None] ** np.arange(1, FIT_ORDER + 1))
 ROUNDED_STEP = 2.0**-51  # relative rounding error of a step, of either sign
-# Relative error by which a step of LSODA adds to those before, whatever its tolerance. Measured against closed forms in
-# 500 to 65 000 steps at tolerances from 1e-15 to 1e-12: 0.8 to 3.5 times 2^-52.
+# Relative error that a step of LSODA adds to those before, whatever its tolerance. Measured against closed forms of
+# stable motions in 20 to 65 000 steps at tolerances from 1e-15 to 1e-12: at most 3.5 times 2^-52, often far less.
 LSODA_DRIFT = 2.0**-50
 SMALLEST_RTOL = 100 * float(np.finfo(float).eps)  # the smallest relative tolerance that SciPy accepts
 
