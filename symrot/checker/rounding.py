@@ -102,26 +102,26 @@ def _is_constant(node: Node) -> bool:
     return all(part.value == "pi" for _, part in walk(node) if part.kind == "name")
 
 
-def _begins_with(worked: Claim) -> bool:
-    """Return whether the value of ``worked`` begins with the digits printed for it, as 2/3 does with ``0.66..``."""
-    assert worked.value is not None
-    places = len(worked.printed.partition(".")[2])
+def _begins_with(value_claim: Claim) -> bool:
+    """Return whether the value in a claim begins with the digits printed for it, as 2/3 does with ``0.66..``."""
+    assert value_claim.value is not None
+    places = len(value_claim.printed.partition(".")[2])
     half = number(Fraction(5, 10 ** (places + 1)))
-    middle = sum_of([worked.value, half if worked.printed.startswith("-") else negated(half)])
-    return "e" not in worked.printed and decide_value(replace(worked, value=middle)).verdict == "true"
+    middle = sum_of([value_claim.value, half if value_claim.printed.startswith("-") else negated(half)])
+    return "e" not in value_claim.printed and decide_value(replace(value_claim, value=middle)).verdict == "true"
 
 
 def _rounded(claim: Claim, verdict: Verdict, value: Node, digits: str, side: Node) -> Verdict:
-    worked = replace(claim, relation=None, value=value, printed=digits)
-    decision = decide_value(worked)
+    value_claim = replace(claim, relation=None, value=value, printed=digits)
+    decision = decide_value(value_claim)
     source = claim.sources["claim"]
-    if source.startswith("..", side.span[1]) and _begins_with(worked):
+    if source.startswith("..", side.span[1]) and _begins_with(value_claim):
         note = f"to the digits given: the value begins with {digits}"
         return Verdict("true", dimension=verdict.dimension, notes=(*verdict.notes, note), seconds=verdict.seconds)
     if decision.verdict == "true":
         note = f"to the digits given: the value rounds to {digits}"
         return Verdict("true", dimension=verdict.dimension, notes=(*verdict.notes, note), seconds=verdict.seconds)
-    right = rounded_value(worked)
+    right = rounded_value(value_claim)
     if "." not in right and not LONG_WHOLE.fullmatch(right.removeprefix("-")):
         right = ""  # a short integer is an exact number
     if not right and decision.verdict == "false":  # the right digits cannot be written in its place
