@@ -167,7 +167,7 @@ def _checked(
         left, right = left.args
     if right is None:
         raise InputError("expected two sides, or one text 'left == right'")
-    if not isinstance(assume, Iterable):
+    if isinstance(assume, str) or not isinstance(assume, Iterable):
         raise InputError(f"assume: expected a list of hypotheses, such as [Eq(a, b)], got {assume!r}")
     for side in (left, right):
         for entry in flatten(side)[0]:
