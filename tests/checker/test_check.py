@@ -215,7 +215,7 @@ def test_a_side_or_hypothesis_that_is_no_formula_is_refused_in_one_sentence(valu
 
 
 def test_the_text_of_a_side_is_never_run():
-    with pytest.raises(symrot.errors.InputError, match="expected a formula or a matrix of formulas, got .__import__"):
+    with pytest.raises(symrot.errors.InputError, match=r"expected a formula or a matrix of formulas, got .__import__"):
         symrot.check(X, "__import__('os').abort()")
     with pytest.raises(symrot.errors.InputError, match="expected a list of hypotheses"):
         symrot.check(X, X, assume="x > 0")
