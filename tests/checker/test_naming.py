@@ -375,7 +375,9 @@ def test_every_formula_that_only_its_letters_name_is_a_known_formula():
     assert {*SCALAR_PRODUCTS, *ANY_VECTORS, *GENERAL, *OF_ONE_ENTRY, GYROSCOPE} <= names
 
 
-@pytest.mark.parametrize("formula", ["T = {}2π√(L/g)", "T = {}1/2 I ω^2", "I = {}1/2 m r^2", "I_zz = {}m (a^2 + b^2)/12"])
+@pytest.mark.parametrize(
+    "formula", ["T = {}2π√(L/g)", "T = {}1/2 I ω^2", "I = {}1/2 m r^2", "I_zz = {}m (a^2 + b^2)/12"]
+)
 def test_a_positive_quantity_has_no_minus_sign(formula):
     assert symrot.check(formula.format(""), repair=False).verdict == "recognised"
     verdict = symrot.check(formula.format("-"))
