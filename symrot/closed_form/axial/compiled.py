@@ -140,8 +140,7 @@ class Constants:
         return [float(bool(self._decay)), 1.0, float(transverse), *self._head]
 
     def moving(self, rate: Fraction | float, transverse: bool) -> list[float]:
-        """Return the 18 constants for C that depend on ``rate``, the initial angular velocity about the driven axis,
-        rad/s.
+        """Return the 18 constants for C that depend on the initial angular velocity about the driven axis, rad/s.
 
         They are stored in a struct of :file:`axial.h`. The first four describe the rotation about the driven axis: the
         initial angular velocity, the initial angular acceleration, the final angular velocity, and the initial minus
