@@ -68,8 +68,7 @@ class Root:
 
 @dataclass(frozen=True)
 class Radicand:
-    """A radicand, split into factors: ``content * above / below``, times ``f^(2 n)`` for the pairs (f, n) in
-    ``outside``.
+    """A radicand in factors: ``content * above / below``, times ``f^(2 n)`` for each pair (f, n) in ``outside``.
 
     Under a square root ``x^2 y / 4`` has content 1/4, above y, below 1 and outside (``|x|``, 1).
     """
