@@ -8,7 +8,6 @@ the roots of the cubic, without the rearrangements that doubles need.
 from typing import Any
 
 import numpy as np
-from mpmath import mp, mpc, mpf
 
 from symrot.closed_form.build import Floats
 from symrot.closed_form.portable.phases import (
@@ -23,9 +22,12 @@ from symrot.closed_form.portable.phases import (
     vector,
 )
 from symrot.closed_form.portable.quaternions import Axes, mapping, unit
+from symrot.formula.precision import digits, mp
 from symrot.kinematics.hamilton import conjugate, hamilton
 
 __all__ = ["PortableHeavyTop"]
+
+mpc, mpf = mp.mpc, mp.mpf
 
 DIGITS = 160  # digits of the constants
 EQUAL = mpf(10) ** -70  # closer roots, relative to their size, count as equal: equal roots are found to about 80 digits
@@ -36,7 +38,7 @@ NEAR = mpf(10) ** -29  # nearer starts to the unstable upright position are refu
 class PortableHeavyTop:
     """The motion of a symmetric heavy top, computed from the arguments of the C function symrot_heavy_top_prepare."""
 
-    @mp.workdps(DIGITS)  # type: ignore[untyped-decorator]
+    @digits(DIGITS)
     def __init__(
         self, moments: list[float], pull: list[float], omega: list[float], quaternion: list[float],
         space: list[float], axes: list[float] | None,
