@@ -40,11 +40,11 @@ class Start(NamedTuple):
     exact: Floats
 
     def error(self, states: Floats) -> float:
-        """Return the largest deviation from the reference among the computed end states of the first trajectories.
+        """Return the largest deviation of computed end states from the reference end states ``exact``.
 
-        Row k of ``states`` is the state of trajectory k at the end time.
+        Row k of ``states`` is the state of trajectory k at the end time. Only the first 16 trajectories have a
+        reference end state; the others do not count.
         """
-        # Only the first trajectories have a reference.
         pairs = zip(states[: len(self.exact)], self.exact, strict=True)
         return float(max(self.problem.largest_error(computed, exact) for computed, exact in pairs))
 

@@ -81,8 +81,8 @@ def _samples(name: str, count: int) -> list[Floats]:
 def _block(name: str, shape: str, count: int, place: int) -> tuple[Floats, Floats]:
     """Return the arrays (inputs, outputs) of ``count`` samples, which all tools' versions of the kernel ``name`` use.
 
-    A sample is a row of an array for the ``shape`` ``"one"``, and a column for batches. Another number ``place`` gives
-    arrays with the same values at another place in memory.
+    A sample is a row of an array for the ``shape`` ``"one"``, and a column for batches. ``place`` is the number, from
+    0, of the block of memory that contains the arrays: all blocks contain the same values.
     """
     samples = np.concatenate(_samples(name, count))
     size = sum(a.size for a in kernel_program(name).signature.arguments if a.role == "out")
@@ -118,7 +118,7 @@ def _addresses(name: str, shape: str, count: int, place: int) -> Any:
 def _timed(run: Callable[[int, int], object], samples: int) -> Callable[[int], float]:
     """Return a function ``measure(place)`` that times ``run(repeats, place)`` and returns seconds per sample.
 
-    ``place`` is the number of the memory block (:func:`_block`) with inputs and outputs.
+    ``place`` is the number, from 0, of the block of memory with inputs and outputs (see :func:`_block`).
     """
     repeats, elapsed = 1, 0.0
     # repeats are doubled until the clock measures the time accurately; the first runs start with cold caches
@@ -141,10 +141,11 @@ def _in_c(
 ) -> tuple[dict[str, Callable[[int], float]], Floats]:
     """Compile the C ``text`` of the kernel ``name`` with its drivers; return timing functions and outputs.
 
-    The timing functions are a dictionary by shape of input: one sample at a time, a batch small enough for the
-    processor's cache (``"cached"``), a batch of ``many`` samples (left out if that is 0). Each returns seconds per
-    sample; its argument is the ``place`` of :func:`_block`. The outputs are for the batch ``"cached"``. ``prepare`` is
-    called with the loaded library.
+    The timing functions are a dictionary by shape of input: one sample at a time (``"one"``), a batch small enough for
+    the processor's cache (``"cached"``), and a batch of ``many`` samples (``"many"``; left out if the number is 0).
+    Each returns seconds per sample; its argument is the number, from 0, of the block of memory with inputs and outputs,
+    of which there are ``PLACES[shape]``. The outputs are those of the batch ``"cached"``. ``prepare`` is called with
+    the loaded library.
     """
     loaded = ctypes.CDLL(str(build_cache.build(text, f"bench_{name}", FLAGS)))
     prepare(loaded)
@@ -261,7 +262,11 @@ def _operations(contestants: Sequence[Contestant]) -> tuple[int, int]:
 
 
 def _ratios(contestants: Sequence[Contestant]) -> dict[str, float]:
-    """Return, for each shape of input, symrot's time divided by the least time of the other tools."""
+    """Return, for each shape of input, the ratio of symrot's time to that of the fastest other tool.
+
+    Least times are compared. For the shape ``"many"``, it is instead the median of the ratios in the single rounds, for
+    the tool for which this median is largest.
+    """
     own, *others = contestants
     ratios = {}
     for shape in SHAPES:
@@ -276,8 +281,9 @@ def _ratios(contestants: Sequence[Contestant]) -> dict[str, float]:
 
 
 def _table(name: str, contestants: Sequence[Contestant]) -> list[str]:
-    """Return the lines of the table for the kernel ``name``: the contestants, and symrot's time over the least other
-    time.
+    """Return the lines of the table for the kernel ``name``: one for each contestant, and one with ratios.
+
+    The ratios are, for each shape of input, symrot's time divided by the time of the fastest other tool.
     """
     parts = [f"operations {mine} to {best}" for mine, best in (_operations(contestants),)]
     parts += [f"{shape} {ratio:.2f}" for shape, ratio in _ratios(contestants).items()]

@@ -110,10 +110,13 @@ FUNCTIONS = (
 
 
 def _points(function: Function, real: Real, form: str, count: int) -> Floats:
-    """Return about ``count`` test arguments of a function, one column per point."""
+    """Return about ``count`` test arguments of a function, one column per point.
+
+    ``form`` is ``"one"`` to test the C function for one sample, or ``"batch"`` to test that for batches, which is valid
+    in a smaller range.
+    """
     draw = np.random.default_rng(3)
     far = float(FAR[real.precision])
-    # the forms for one sample and for batches have different ranges
     reach = min(function.reach, REACH[real.precision] if form == "one" else far)
     kind = np.float32 if real.suffix else np.float64
     sizes = np.exp(draw.uniform(np.log(LEAST[real.precision]), np.log(reach), count // 4))
@@ -150,9 +153,12 @@ def _directions(real: Real, count: int, kind: Any) -> Floats:
 
 
 def _text(kernel: str) -> str:
-    """Return the C text of a kernel and of loops over arrays that call its functions of :data:`FUNCTIONS`."""
+    """Return the C text of a kernel, and of loops over arrays that call its functions.
+
+    There is a loop for each C function of the kernel that :data:`FUNCTIONS` lists.
+    """
     program, reals = kernel_program(kernel), (DOUBLE, FLOAT)
-    source = c_functions(program, reals, near=True).replace(f'#include "{MATH_HEADER}"', "")
+    source = c_functions(program, reals, branch_free=True).replace(f'#include "{MATH_HEADER}"', "")
     header = c_header(program, kernel_description(definition(kernel), "c"), reals)
     text = math_header() + source.replace(f'#include "{kernel}.h"', header)
     functions = {function.name: function for function in FUNCTIONS if function.kernel == kernel}

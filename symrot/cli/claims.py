@@ -19,7 +19,7 @@ def _check(options: Namespace) -> int:
         raise InputError("check: expected a CLAIM, a FILE or --textbook NAME (see `symrot check --help`)")
     if options.all and options.textbook != "all":
         raise InputError(
-            "--all: expected --textbook all as well, since --all writes pages of errata that contain every document"
+            "--all: expected --textbook all as well, since --all writes pages that list the errors of all textbooks"
         )
     if options.textbook:
         return _check_textbook(options)

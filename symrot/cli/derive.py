@@ -17,7 +17,11 @@ PAGES: dict[str, Callable[[Any], str]] = {
     "html": lambda page: page.html(),
 }
 PAGE_FILES = {".html": "html", ".htm": "html", ".tex": "latex", ".md": "markdown", ".pdf": "latex"}
-"""Suffix of a file -> format of pages; the error message for ``-o FILE`` suggests this format with a folder instead."""
+"""Suffix of a file -> format of pages.
+
+The option -o takes a folder. If a FILE is given, the error message suggests a folder, and ``--format`` with the format
+of this suffix.
+"""
 
 
 def _derive(options: Namespace) -> int:

@@ -180,8 +180,9 @@ def _noticed(omega: Floats) -> Floats:
 def free_bodies(body: FreeRigidBody, omega: Floats, start: Floats) -> Batch:
     """Return the motions of one free body from n initial states as a batch.
 
-    :func:`fits_batch` must be True for all rows of ``omega``. ``start`` are the initial attitudes that
-    :func:`attitudes` returns: two doubles for each component of a quaternion, shape (n, 8), or (8,) for one attitude.
+    ``omega`` are the initial angular velocities, rad/s, shape (n, 3); :func:`fits_batch` must be True for each.
+    ``start`` are the initial attitudes that :func:`attitudes` returns: two doubles for each component of a quaternion,
+    shape (n, 8), or (8,) if all motions share one attitude.
     """
     exact = np.empty((len(omega), 8))
     exact[:, :6] = body.gaps
@@ -197,10 +198,12 @@ def free_bodies(body: FreeRigidBody, omega: Floats, start: Floats) -> Batch:
 
 
 def free_bodies_of_moments(moments: Sequence[Column], omega: Floats, start: Floats) -> Batch:
-    """Return the motions of n free bodies with the principal moments ``moments``, kg m^2, as a batch.
+    """Return the motions of n free bodies as a batch.
 
-    ``start`` are the initial attitudes that :func:`attitudes` returns: two doubles for each component of a quaternion,
-    shape (n, 8), or (8,) for one attitude.
+    ``moments`` are the three principal moments, kg m^2: each is an array of n values, or one Fraction for all bodies.
+    ``omega`` are the initial angular velocities along the principal axes, rad/s, shape (n, 3). ``start`` are the
+    initial attitudes that :func:`attitudes` returns: two doubles for each component of a quaternion, shape (n, 8), or
+    (8,) if all motions share one attitude.
     """
     omega, n = _noticed(omega), len(omega)
     exact, pairs = np.empty((n, 8)), _columns(moments, n)
@@ -227,8 +230,10 @@ def free_bodies_of_tensors(
 
     ``settled[i]`` is True if the batch has the constants of motion i with the same bits as if motion i were computed
     alone; the caller must compute the other motions alone. ``entries`` are the tensor components xx, yy, zz, xy, xz and
-    yz, kg m^2; ``start`` are the initial attitudes that :func:`attitudes` returns. If a component that all motions
-    share is nonzero and not between SMALLEST and LARGEST in absolute value, the batch is None and ``settled`` is False.
+    yz, kg m^2: each is an array of n values, or one Fraction for all bodies. ``omega`` are the initial angular
+    velocities, rad/s, shape (n, 3); ``start`` are the initial attitudes that :func:`attitudes` returns. If a component
+    that all bodies share is nonzero and not between SMALLEST and LARGEST in absolute value, the batch is None and all
+    entries of ``settled`` are False.
     """
     settled = np.ones(len(omega), np.bool_)
     principal = bodies.principal_bodies(entries, omega)
@@ -252,9 +257,12 @@ def tops(
 ) -> Batch:  # fmt: skip
     """Return the motions of n symmetric heavy tops as a batch.
 
-    ``across`` and ``own`` are the moments, kg m^2, about an axis normal to the symmetry axis and about the symmetry
-    axis; ``pull`` is the weight times the distance of the centre of mass from the fixed point, N m, as hi and lo.
-    ``start`` are the initial attitudes converted to the axes ``frame`` of the formulas, as :func:`turned` returns them.
+    ``across`` and ``own`` are the moments of inertia, kg m^2, about an axis normal to the symmetry axis and about the
+    symmetry axis: each is an array of n values, or one Fraction for all tops. ``pull`` is the weight times the distance
+    of the centre of mass from the fixed point, N m, as a sum of two doubles hi and lo: shape (n, 2), or (2,) if all
+    tops share it. ``omega`` are the initial angular velocities, rad/s, shape (n, 3). ``start`` are the initial
+    attitudes, converted to the axes of the formulas, ``frame``, by :func:`turned`: two doubles hi and lo for each
+    component of a quaternion, shape (n, 8), or (8,) if all motions share one attitude.
     """
     rates = _pairs(np.ascontiguousarray(omega[:, frame.named]))
     axes = None if frame.axes is None else np.array(frame.axes)
@@ -264,9 +272,10 @@ def tops(
 def gyrostats(across: Column, own: Column, rotor: Column, axis: int, omega: Floats, start: Floats) -> Batch:
     """Return the motions of n symmetric gyrostats as a batch.
 
-    ``rotor`` is the rotor's angular momentum, kg m^2/s, along the symmetry axis ``axis`` (0, 1 or 2). ``across`` and
-    ``own`` are the moments, kg m^2, about an axis normal to the symmetry axis and about the symmetry axis. ``start``
-    are the initial attitudes that :func:`attitudes` returns.
+    ``across`` and ``own`` are the moments of inertia, kg m^2, about an axis normal to the symmetry axis and about the
+    symmetry axis, whose index is ``axis`` (0, 1 or 2). ``rotor`` is the rotor's angular momentum, kg m^2/s, along this
+    axis. Each of the three is an array of n values, or one Fraction for all gyrostats. ``omega`` are the initial
+    angular velocities, rad/s, shape (n, 3). ``start`` are the initial attitudes that :func:`attitudes` returns.
     """
     named = [(axis + 1) % 3, (axis + 2) % 3, axis]
     rates = _pairs(np.ascontiguousarray(omega[:, named]))
@@ -275,10 +284,12 @@ def gyrostats(across: Column, own: Column, rotor: Column, axis: int, omega: Floa
 
 
 def spin_ups(across: Column, own: Column, torque: Column, axis: int, omega: Floats, start: Floats) -> Batch:
-    """Return the motions of n symmetric bodies under a constant torque, N m, about the body axis ``axis``, as a batch.
+    """Return the motions of n symmetric bodies under a constant torque about the body axis ``axis``, as a batch.
 
-    ``across`` and ``own`` are the moments, kg m^2, about an axis normal to the driven axis and about the driven axis.
-    ``start`` are the initial attitudes that :func:`attitudes` returns.
+    ``across`` and ``own`` are the moments of inertia, kg m^2, about an axis normal to the driven axis and about the
+    driven axis; ``torque`` is in N m. Each of the three is an array of n values, or one Fraction for all bodies.
+    ``omega`` are the initial angular velocities, rad/s, shape (n, 3). ``start`` are the initial attitudes that
+    :func:`attitudes` returns.
     """
     numbers = np.empty((len(omega), 20))
     numbers[:, :6] = _columns([across, own, torque], len(omega))
@@ -291,8 +302,8 @@ def driven(constants: Constants | Sequence[Constants], omega: Floats, start: Flo
     """Return the motions of n bodies driven about one axis as a batch.
 
     ``constants`` are the :class:`Constants` of one body, or a list of n, all with the same axis. ``omega`` are the
-    initial angular velocities, rad/s, shape (n, 3). ``start`` are the initial attitudes from :func:`attitudes`, shape
-    (n, 8) or (8,): the four components of each quaternion as pairs of doubles.
+    initial angular velocities, rad/s, shape (n, 3). ``start`` are the initial attitudes that :func:`attitudes` returns:
+    two doubles for each component of a quaternion, shape (n, 8), or (8,) if all motions share one attitude.
     """
     bodies = [constants] * len(omega) if isinstance(constants, Constants) else constants
     axis = bodies[0].axis

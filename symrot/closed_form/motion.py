@@ -131,7 +131,7 @@ def prepared(name: str, arguments: tuple[list[float] | None, ...], refusal: Call
     InputError
         With the text of ``refusal``, if the numbers are outside the domain of the closed form.
     CompilerError
-        If the C compiler rejects the source, or does not round every operation separately.
+        If the C compiler rejects the source, or does not round after every operation but fuses some, such as a*b + c.
     """
     # without a C compiler, NumPy and mpmath compute the motion
     if not available(name):
@@ -148,7 +148,10 @@ def prepared(name: str, arguments: tuple[list[float] | None, ...], refusal: Call
     if status == _DOMAIN:
         raise InputError(refusal())
     if status:
-        raise CompilerError("the C compiler does not round every operation separately; set CC to another compiler")
+        raise CompilerError(
+            "expected a C compiler that rounds after every operation, got one that fuses some, such as a*b + c; "
+            "set CC to another compiler"
+        )
     return _Compiled(constants, evaluate)
 
 

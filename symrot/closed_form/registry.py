@@ -153,10 +153,11 @@ def _driven_axis(scene: Scene) -> int | None:
 
 
 def _driven_symmetry_axis(scene: Scene) -> int | None:
-    """Return the index of the symmetry axis about which a constant torque, or none, drives the body.
+    """Return the index of the body's symmetry axis about which the sum of all constant torques acts, or None.
 
-    The linear damping about the two other axes must be equal. Return None if there is no such axis, or if the scene's
-    output includes the attitude and the body is damped: then the attitude has no closed form.
+    The sum may be zero. The linear damping about the two other axes must be equal. None means that there is no such
+    axis, that a torque is neither constant in the body nor linear damping, that the scene has no torque, or that the
+    scene's output includes the attitude of a damped body, which has no closed form.
     """
     if not _is_driven(scene):
         return None

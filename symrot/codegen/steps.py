@@ -65,20 +65,21 @@ class TaylorSeries:
 
 @dataclass(frozen=True)
 class WithDerivatives:
-    """A numerical method, ``plain``, whose step also computes exact derivatives of the new state by inputs, ``by``."""
+    """A numerical method whose step also computes exact derivatives of the new state by some of its inputs."""
 
+    # the same method without derivatives
     plain: RungeKutta | TaylorSeries
-    # "x" (all states), "omega", "q", "p" (all parameters), "dt", "t", one state or one parameter
+    # the inputs: "x" (all states), "omega", "q", "p" (all parameters), "dt", "t", one state or one parameter
     by: tuple[str, ...]
 
     @property
     def name(self) -> str:
-        """The name of the numerical method in ``plain``, such as ``rk4``."""
+        """The name of the numerical method alone, without its derivatives, such as ``rk4``."""
         return self.plain.name
 
     @property
     def order(self) -> int:
-        """The order of accuracy of the numerical method in ``plain``, such as 4 for ``rk4``."""
+        """The order of accuracy of the numerical method, such as 4 for ``rk4``."""
         return self.plain.order
 
     @property

@@ -1,8 +1,9 @@
 """Congruence closure: among inverse functions or logarithms that are proven equal, one replaces the others.
 
-``asin(x)`` and ``atan2(x, sqrt(1 - x^2))`` are equal, but the polynomial ring has an independent variable for each. A
-proof is returned as the polynomial rings that it computes in; it holds wherever no divisor in these rings is zero. The
-arguments ``hypotheses`` are expressions that are zero, ``domain`` formulas that are nonnegative.
+``asin(x)`` and ``atan2(x, sqrt(1 - x^2))`` are equal, but the polynomial ring has an independent variable for each. The
+functions return the polynomial rings in which they have computed a proof: what is proven holds wherever no divisor in
+these rings is zero. Of their arguments, ``hypotheses`` are expressions that are zero, and ``domain`` are formulas that
+are nonnegative wherever both sides of the equation are defined.
 """
 
 from collections.abc import Iterator, Sequence
@@ -28,7 +29,8 @@ def proof_by_congruence(
 ) -> tuple[FormulaRing, ...] | None:
     """Prove ``left = right`` by replacing inverse functions and logarithms with equal ones.
 
-    Return the polynomial rings that the proof uses, or None if no proof is found.
+    Return the polynomial rings that the proof uses, or None if no proof is found. ``hypotheses`` are expressions that
+    are zero, and ``domain`` are formulas that are nonnegative wherever both sides are defined.
     """
     rings: list[FormulaRing] = []
     while True:

@@ -32,7 +32,11 @@ from symrot.exact.ring.ring import FormulaRing
 __all__ = ["closed_form_witness", "coordinates_of", "rational_witness"]
 
 ATTEMPTS = 60
-"""Number of random points; a nonzero polynomial of degree d is zero at one of them with a probability of about d/40."""
+"""Number of random points that a search for a counterexample tries.
+
+A nonzero polynomial of degree d is zero at a random rational point with a probability of at most about d/40, because
+each symbol takes any of its values with a probability of at most about 1/40.
+"""
 
 SIMPLER_TERMS = 200_000
 """Largest number of terms that are evaluated in the search for a counterexample with shorter numbers.

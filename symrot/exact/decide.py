@@ -40,7 +40,8 @@ __all__ = ["decide", "is_zero", "normal_form"]
 def normal_form(expression: Any, relations: Sequence[Any] = ()) -> Any:
     """Return the normal form of a formula; it is 0 only if the formula is zero wherever it is defined.
 
-    The converse holds in this module's scope.
+    A formula that is zero has the normal form 0 if it is in the scope of this module: a rational function of symbols,
+    exponentials, unit vectors, and sines and cosines of angles. Otherwise its normal form may differ from 0.
 
     Parameters
     ----------
@@ -82,8 +83,8 @@ def normal_form(expression: Any, relations: Sequence[Any] = ()) -> Any:
 def is_zero(expression: Any, relations: Sequence[Any] = ()) -> bool:
     """Return whether a formula, or each entry of a matrix, is proven to be zero wherever it is defined.
 
-    ``relations`` are hypotheses, as for :func:`normal_form`. Outside the scope of :func:`normal_form`, the result False
-    proves nothing.
+    ``relations`` are hypotheses, as for :func:`normal_form`. For formulas outside the scope of this module (see
+    :func:`normal_form`), the result False proves nothing.
     """
     entries, _ = flatten(expression)
     ring = FormulaRing(entries, [as_zero(relation) for relation in relations])
@@ -168,7 +169,7 @@ def normalise(case: _FormulaCase) -> None:
 
 
 def witness(case: _FormulaCase) -> None:
-    """Search a counterexample, first a rational point, then one with closed-form values, and store it in ``case``."""
+    """Search for a counterexample, first at rational points, then at closed-form points, and store it in ``case``."""
     case.rely_on(case.proof_rings)
     case.counterexample = case.search(rational_witness, closed_form_witness)
 

@@ -90,11 +90,11 @@ class Case(ABC):
     unproven : list of int
         Indices of the entries for which no proof of equality is known.
     proof_rings : tuple of FormulaRing
-        The rings, besides ``ring``, in which the first stages have proven single entries. The stage that proves the
-        last entry passes them, and the rings of its own proofs, to :meth:`rely_on`.
+        The rings, besides ``ring``, that the function :func:`subtract` used to prove single entries equal. A stage that
+        proves the other entries passes these rings, and the rings of its own proofs, to :meth:`rely_on`.
     rings : tuple of FormulaRing
-        The rings of all proofs once all entries are proven; empty until then. Read these, not ``proof_rings``, for a
-        verdict: their divisors, assumed to be nonzero, are among the ``conditions``.
+        The rings that were last passed to :meth:`rely_on`: once all entries are proven, those of all proofs, besides
+        ``ring``. Their divisors, assumed to be nonzero, are among the ``conditions``.
     conditions : tuple
         Relations under which the verdict holds.
     counterexample : Counterexample or None
@@ -125,7 +125,7 @@ class Case(ABC):
         # without such a point the equation may be true of nothing
 
     def rely_on(self, rings: tuple[FormulaRing, ...]) -> None:
-        """Store the polynomial rings of all proofs, and the conditions under which the proofs are valid."""
+        """Store the polynomial rings of the proofs so far, and the conditions under which these proofs are valid."""
         # no divisor in these rings may be zero, so the divisors become conditions
         self.rings, self.conditions = rings, self.conditions_of(rings)
 

@@ -29,10 +29,10 @@ __all__ = [
 DIGITS = 50
 
 MOST_BITS = 1000
-"""Largest number of bits of the integer part of a number, such as the argument of a sine, at 50 digits."""
+"""Arguments of functions, and exponents, must be at most 2^MOST_BITS in absolute value; else there is no interval."""
 
 MOST_BITS_EXACT = 4000
-"""Largest number of bits of the numerator or denominator of an exact number."""
+"""Largest number of bits of the numerator or denominator of an exact fraction; a longer one becomes an interval."""
 
 Value = Any  # Fraction or an interval of mpmath
 

@@ -32,7 +32,7 @@ _NAMES = (*INVERSE, log)
 
 @dataclass(frozen=True)
 class Lift:
-    """A proof that a sum of inverse functions is zero follows if all polynomials ``numerators`` of ``ring`` are zero.
+    """Polynomials, ``numerators`` in ``ring``; if all are zero, a sum of inverse functions or of logarithms is zero.
 
     For example, ``D = asin(x) + acos(x) - pi/2`` lies between -2 pi and 2 pi, and is zero if ``sin(D)`` and
     ``cos(D) - 1`` are zero.

@@ -1,9 +1,10 @@
 """Simplified arguments of functions: ``sin(sin(x)^2 + cos(x)^2) = sin(1)``.
 
 A polynomial ring may have one variable for each of two equal calls that are written differently, such as ``asin(1/3)``
-and ``asin(sin(x)^2/3 + cos(x)^2/3)``. So arguments are replaced by normal forms first, computed in polynomial rings.
-Old and new formula are equal wherever no divisor in these rings is zero. The functions of this module return the rings;
-their arguments ``hypotheses`` are expressions that are zero, ``domain`` formulas that are nonnegative.
+and ``asin(sin(x)^2/3 + cos(x)^2/3)``. So arguments of functions are first replaced by their normal forms, computed in
+polynomial rings. Old and new formula are equal wherever no divisor in these rings is zero. The functions of this module
+return the rings. Of their own parameters, ``hypotheses`` are expressions that are zero, and ``domain`` are formulas
+that are nonnegative wherever the formulas are defined.
 """
 
 from collections.abc import Sequence
@@ -51,9 +52,10 @@ def with_plain_arguments(
 
 
 def _common_forms(ring: FormulaRing, arguments: Sequence[Expr]) -> tuple[dict[Expr, Expr], tuple[FormulaRing, ...]]:
-    """Return a map from arguments to normal forms, and the rings, besides ``ring``, that prove arguments equal.
+    """Return (forms, rings): a map from arguments of functions, such as u in sin(u), to their normal forms in ``ring``.
 
-    Equal arguments get the form of the first.
+    Arguments that are proven equal get the same form, the normal form of the first. ``rings`` are the further
+    polynomial rings in which these proofs were computed; the proofs hold wherever no divisor in them is zero.
     """
     shorter: dict[Expr, Expr] = {}
     rings: list[FormulaRing] = []

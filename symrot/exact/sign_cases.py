@@ -92,18 +92,17 @@ def _constraints(ring: FormulaRing, insides: dict[int, PolyElement]) -> Iterator
 def _consistent(
     ring: FormulaRing, insides: dict[int, PolyElement], constraints: Sequence[Constraint]
 ) -> list[Constraint]:
-    """Return a choice of ``constraints`` on the signs of f in ``|f|`` that can all be satisfied at every point.
+    """Return some of ``constraints`` on the signs of f in ``|f|``, such that at each point some signs satisfy all.
 
-    A constraint is left out if it shares, with one that was chosen before, an f that may be zero. ``insides`` maps the
-    variable of each ``|f|`` to f.
+    At a point where f is zero, ``|f| = s f`` holds for both signs s. The sign can then be chosen so that one constraint
+    on it is satisfied, but perhaps not two. So a constraint is left out if an earlier one contains the same f, and this
+    f may be zero. ``insides`` maps the variable of each ``|f|`` to f.
     """
     # formulas are defined only where a divisor is not zero
     divisors = {factor for poly in ring.ratios.factors for factor, _ in factor_list(poly)[1]}
     nonzero = {place for place, inside in insides.items() if inside in divisors or -inside in divisors}
     accepted: dict[frozenset[int], Constraint] = {}
     for sign, places in constraints:
-        # where f = 0 its sign is free and can satisfy one constraint, but perhaps not two; so at every point some signs
-        # satisfy all constraints that are returned
         if all(places & others <= nonzero for others in accepted):
             accepted.setdefault(places, (sign, places))
     return list(accepted.values())

@@ -24,15 +24,18 @@ from symrot.inertia.tensor import inertia_of_second_moments
 __all__ = ["MeshBody", "mesh", "polyhedron", "read_mesh"]
 
 MOST_EXACT = 200_000
-"""Number of triangles times number of integrals up to which integrals are always exact."""
+"""Integrals are computed exactly if the number of triangles times the number of integrals is at most this."""
 
 LARGEST_WORK = 30_000_000
-"""Number of triangles times number of integrals up to which exact integrals are an alternative to doubles."""
+"""Integrals in doubles that are too inaccurate are replaced by exact ones if there are at most this many.
+
+Their number is the number of triangles times the number of integrals over one triangle.
+"""
 
 LARGEST_ERROR = Fraction(1, 10**12)
 """Largest relative error of results in doubles; if the bound is larger, the integrals are computed exactly.
 
-A mesh with more than LARGEST_WORK integrals is then refused."""
+If there are more than LARGEST_WORK integrals, InputError is raised instead."""
 
 LARGEST_SHARE = Fraction(1, 10**6)
 """Largest rounding error of second moments in doubles, relative to the smallest principal second moment.

@@ -74,7 +74,7 @@ def _obj(content: bytes) -> Facts:
 
 
 def _ply(content: bytes) -> Facts:
-    """Return no facts (an empty :class:`Facts`) about a PLY file, after a test of a file in text form.
+    """Test a PLY file if it is in text form; always return an empty :class:`Facts`.
 
     InputError is raised for corners that are no whole numbers, which trimesh would round, and for surplus lines, which
     trimesh would ignore.
@@ -94,7 +94,7 @@ def _ply(content: bytes) -> Facts:
 
 
 def _glb(content: bytes) -> Facts:
-    """Return no facts (an empty :class:`Facts`) about a GLB file, after a test.
+    """Test a GLB file; return an empty :class:`Facts`.
 
     InputError is raised if trimesh would lose a part of the shape, such as morph targets, skins or required extensions.
     """

@@ -1,6 +1,7 @@
 """Fast reading of OBJ files of the common form: lines of vertices and of triangles, each line like the others.
 
-Other files, such as those with polygons or lines that go on, are left to trimesh, which reads each line by itself.
+Other files, such as those with polygons of more than three corners, or with lines that a backslash continues on the
+next line, are left to trimesh, which reads each line by itself.
 """
 
 import re
@@ -33,7 +34,7 @@ def read_plain_obj(content: bytes) -> tuple[NDArray[np.float64], NDArray[np.int6
     """
     if any(blank in content for blank in (b"\t", b"\v", b"\f")):
         return None
-    if b"\\" in content and (b"\\\n" in content or b"\\\r" in content):  # lines that go on
+    if b"\\" in content and (b"\\\n" in content or b"\\\r" in content):  # lines continued on the next line
         return None
     if b"\r" in content and content.count(b"\r") != content.count(b"\r\n"):
         return None

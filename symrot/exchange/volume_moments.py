@@ -65,8 +65,10 @@ def _lower(powers: Exponents, axis: int) -> Exponents:
 def _coefficients(corners: tuple[Corner, Corner, Corner], degree: int, one: Any) -> dict[Exponents, Any]:
     """Return the coefficient of s^l t^m u^n in 1/((1 - a.v)(1 - b.v)(1 - c.v)) for each (l, m, n) up to a degree.
 
-    The corners a, b, c are three arrays each, with an entry for each triangle. There is one recurrence for each factor.
+    v is the vector (s, t, u). Each corner a, b, c of the triangles consists of three arrays, the coordinates, with an
+    entry for each triangle. ``one`` is the number 1 in the type of the results: 1 for integers, 1.0 for doubles.
     """
+    # one recurrence for each factor
     before: dict[Exponents, Any] = {}
     for corner in corners:
         now: dict[Exponents, Any] = {(0, 0, 0): one}

@@ -82,7 +82,7 @@ def span_of(content: bytes, owner: str, number: int, element: str) -> tuple[Span
         The tag of the parent, and its index, from 0, among the elements with this tag in the order of the file.
     element : str
         The tag of the child. If the parent has no such child, the range is empty: at the byte where
-        the child can be inserted or, if the parent is one tag that ends with ``/>``, behind this tag.
+        the child can be inserted or, if the parent is one tag that ends with ``/>``, after this tag.
     """
     parser = expat.ParserCreate()
     stack: list[bool] = []  # for each open element whether it is the parent
@@ -116,5 +116,5 @@ def span_of(content: bytes, owner: str, number: int, element: str) -> tuple[Span
     parser.Parse(content, True)
     if "stop" in places:
         return Span(places["start"], places["stop"]), True
-    # empty, directly behind the owner's start tag: a new element can be inserted there
+    # empty, directly after the owner's start tag: a new element can be inserted there
     return Span(places["inside"], places["inside"]), False

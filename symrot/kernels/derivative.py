@@ -110,9 +110,10 @@ class Derivatives:
         self.slopes: dict[tuple[Symbol, Symbol], Expr] = {}
 
     def of(self, expr: Expr, variable: Symbol, value: Expr | None = None) -> Expr:
-        """Return the derivative of ``expr`` by the input ``variable``, in terms of named quantities.
+        """Return the derivative of ``expr`` by the input ``variable``.
 
-        ``value`` is the symbol that names ``expr``, if any.
+        The result may contain the symbols of the quantities that the constructor received and of the derivatives in
+        ``named``. ``value`` is the symbol of the quantity whose formula is ``expr``; None if ``expr`` has no symbol.
         """
         # With the symbol y of y = a/b the derivative is (a' - y b')/b, of y = sqrt(a) it is a'/(2 y).
         root_of = expr.base if expr.is_Pow and expr.exp == Rational(1, 2) else None
@@ -142,9 +143,7 @@ class Derivatives:
         return self.slopes[key]
 
     def _by_named(self, expr: Expr, symbol: Symbol, slope: Expr) -> Expr:
-        """Return the derivative of ``expr`` by the named quantity ``symbol``, times this quantity's derivative
-        ``slope``.
-        """
+        """Return the derivative of ``expr`` by the named quantity ``symbol``, times ``slope``, that of the quantity."""
         partial = exact_derivative(expr, symbol)
         if symbol in self.roots:
             partial = _with_sinc(expr, symbol, partial)

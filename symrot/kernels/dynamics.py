@@ -167,12 +167,12 @@ def _heavy_top(name: str, body: str) -> Definition:
 
 
 def _weighed(center: Matrix) -> tuple[Matrix, Named]:
-    """Return (vector, definitions); the torque of the weight is the cross product of half the unit vertical and vector.
+    """Return (vector, definitions): the vector 2 W r, for the weight W and the centre of mass r = ``center``.
 
-    The vector is 2 W r, with the weight W and the centre of mass r = ``center`` from the fixed point. Each component is
-    a new symbol, or 0 if r has a zero; the definitions are pairs (symbol, formula).
+    r is measured from the fixed point. With the upward unit vector e, the torque of the weight is the cross product of
+    e/2 and this vector; the kernel computes e/2, which takes fewer operations than e. Each component of the vector is
+    a new symbol, or 0 if r has a zero there; the definitions are pairs (symbol, formula).
     """
-    # half the vertical takes fewer operations than the vertical
     components = [symbol if c else c for symbol, c in zip(_symbols("moment_of_weight"), center, strict=True)]
     return Matrix(components), tuple(
         (symbol, 2 * _WEIGHT * c) for symbol, c in zip(components, center, strict=True) if c

@@ -39,11 +39,12 @@ def definitions() -> Iterator[tuple[str, Callable[[], Definition]]]:
 
 
 def dcm_by_halves(scalar: Expr, axis: Sequence[Expr], doubled: Sequence[Expr]) -> tuple[Named, ImmutableMatrix]:
-    """Return (definitions of symbols, matrix): the rotation matrix ``1 + scalar [t] + [t][axis]`` with t =
-    ``doubled``.
+    """Return (definitions, matrix): the rotation matrix of a quaternion q with the parts ``scalar`` and ``axis``.
+
+    ``doubled`` is ``t = 2*axis/|q|^2``; for a unit quaternion it is ``2*axis``. The matrix is ``1 + scalar [t] +
+    [t][axis]``, where [v] is the matrix of the cross product with v. It contains new symbols, for the components of t
+    and for one sum; the definitions are pairs (symbol, formula).
     """
-    # [v] is the matrix of the cross product with v, t is parallel to the axis; a unit quaternion (q0, u) gives q0, u, 2
-    # u.
     twice = tuple(Symbol(f"twice_{i}", real=True) for i in "123")
     square = skew(twice) * skew(axis)
     # [t][axis] is symmetric, so each product is computed once.
@@ -61,8 +62,9 @@ def halved(omega: Sequence[Expr]) -> tuple[Named, tuple[Symbol, ...]]:
 
 
 def quaternion_rate(q: Sequence[Expr], half: Sequence[Expr], frame: str = "body") -> ImmutableMatrix:
-    """Return ``dq/dt`` from half the angular velocity: ``q (0, half)`` for body components, ``(0, half) q`` for space
-    components.
+    """Return ``dq/dt`` from ``half``, half the angular velocity in body or space components, as ``frame`` says.
+
+    It is the product ``q (0, half)`` for body components, and ``(0, half) q`` for space components.
     """
     return quaternion_product(q, [0, *half]) if frame == "body" else quaternion_product([0, *half], q)
 
@@ -119,9 +121,7 @@ Branch = tuple[Expr, list[Expr]]  # four times the square of a component, and it
 
 
 def _branch(matrix: Matrix, pivot: int) -> Branch:
-    """Return ``4 q_k^2`` and the components of ``4 q_k q``, k = ``pivot``, from the rotation matrix of a
-    quaternion q.
-    """
+    """Return ``4 q_k^2`` and the components of ``4 q_k q``, k = ``pivot``, from the rotation matrix of a unit q."""
     q = quaternion_of_dcm(matrix, pivot)
     # Both are linear in the matrix. A large q_k gives q or -q without loss of digits.
     square = 4 * q[pivot] ** 2
@@ -129,10 +129,11 @@ def _branch(matrix: Matrix, pivot: int) -> Branch:
 
 
 def _larger(left: Branch, right: Branch) -> Branch:
-    """Return the formulas that select the larger of two numbers, and the row of numbers that goes with it.
+    """Return the branch with the larger ``4 q_k^2``, as formulas that select it when the kernel runs.
 
-    A branch is a pair of the formula ``4 q_k^2``, for one component k of a quaternion q, and the list of the formulas
-    ``4 q_k q_0`` to ``4 q_k q_3``. The result is such a pair too, of conditionals that compare the two ``4 q_k^2``.
+    A branch is a pair: the formula ``4 q_k^2``, for one component k of a unit quaternion q, and the list of the
+    formulas ``4 q_k q_0`` to ``4 q_k q_3``. The result is such a pair too: each of its formulas is a conditional, which
+    compares ``4 q_k^2`` of ``left`` with that of ``right`` and has the value from the branch where it is larger.
     """
     (a, row_a), (b, row_b) = left, right
     return select_ge(a, b, a, b), [select_ge(a, b, x, y) for x, y in zip(row_a, row_b, strict=True)]

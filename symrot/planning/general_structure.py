@@ -131,7 +131,11 @@ def _prefix(number: int, names: list[str], known: set[str]) -> str:
 
 
 def constants_of(scene: Scene, structure: Structure) -> dict[str, Fraction]:
-    """Return the exact values of the constants that the structure leaves free, such as ``{"A": Fraction(1), ..}``."""
+    """Return the exact values of the free constants of a scene's ``structure``, such as ``{"A": Fraction(1), ..}``.
+
+    The structure says which constants of body and torques are zero, one, equal or free; the equations have a parameter
+    for each free one. A mode, the value of a function such as sign that jumps, gets the value 1 for the present.
+    """
     inertia, pattern = scene.body.inertia, structure.inertia
     constants: dict[str, Fraction] = {}
     if isinstance(pattern, PrincipalInertia):
@@ -144,8 +148,7 @@ def constants_of(scene: Scene, structure: Structure) -> dict[str, Fraction]:
         prefix = torque.prefix
         if isinstance(torque, FormulaTorque):
             constants |= {f"{prefix}{name}": scene_torque.number(name) for name in scene_torque.values}
-            # A mode (the value of a jump such as sign) changes during the motion; propagation sets it to the value that
-            # belongs to the state.
+            # A mode changes during the motion; propagation sets it to the value that belongs to the state.
             constants |= {f"{prefix}{switch.mode}": Fraction(1) for switch in torque.switches}
             continue
         for name, field in torque.fields:

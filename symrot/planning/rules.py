@@ -51,7 +51,8 @@ class RuleOutcome(NamedTuple):
     Attributes
     ----------
     structure : Structure
-        The structure after the rule.
+        The structure of the scene after the rule: which constants of body and torques are zero, one, equal or free, and
+        which states are computed.
     skipped : bool
         Whether the rule applies, so that the equations skip something: a term, a state, or a constant that a number
         replaces.

@@ -29,7 +29,7 @@ SPARE = 1e-9  # relative tolerance: versions of NumPy may add numbers in differe
 def _texts() -> dict[str, str]:
     """Return the C functions of each library kernel as text, by the name of the kernel."""
     # without the comment at the head of a C file: it states the bounds that are to be computed from the text
-    return {name: c_functions(kernel_program(name), (DOUBLE, FLOAT), near=True) for name in kernel_names()}
+    return {name: c_functions(kernel_program(name), (DOUBLE, FLOAT), branch_free=True) for name in kernel_names()}
 
 
 def library_tasks() -> dict[str, BoundTask]:

@@ -149,7 +149,7 @@ class LibraryText(KernelText):
 
     @cached_property
     def _functions(self) -> str:
-        return c_functions(kernel_program(self.name), (DOUBLE, FLOAT), near=True)
+        return c_functions(kernel_program(self.name), (DOUBLE, FLOAT), branch_free=True)
 
     @cached_property
     def _section(self) -> dict[str, Any] | str:

@@ -63,7 +63,7 @@ def test_a_loop_of_a_part_stores_last_where_it_walks_along_many_arrays_itself():
 
 def test_nothing_is_computed_after_the_first_store_where_angles_are_asked_for():
     """The results have new names, and both loops still equal the one-sample function."""
-    text = c_source(of_many_arrays(), Description("products", "all", "none", "none"), near=True)
+    text = c_source(of_many_arrays(), Description("products", "all", "none", "none"), branch_free=True)
     assert "const double a1_ =" in text and "const double s_ =" in text and "const double s__ =" in text
     assert len(loops(text)) == 2
     assert all(map(computes_first, loops(text)))

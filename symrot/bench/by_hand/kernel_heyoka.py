@@ -36,7 +36,9 @@ def _function(name: str) -> Any:
 def heyoka_code(name: str) -> tuple[Any, Any, Any]:
     """Return the addresses of the three functions that heyoka compiles for a kernel.
 
-    They compute a single sample, one sample of a batch, and ``LANES`` samples of a batch.
+    The first computes one sample whose inputs, and outputs, are adjacent in memory. The two others compute samples of a
+    batch, in which component i of sample k of n has the index i*n + k: the second computes one sample, and the third
+    computes ``LANES`` adjacent samples in a SIMD vector.
 
     Raises
     ------

@@ -38,11 +38,26 @@ def heyoka_system(
 
 def heyoka_integrator(
     rates: Program, parameters: Mapping[str, float], start: Sequence[float], tolerance: float,
-    settings: dict[str, bool], began: float = 0.0,
+    settings: dict[str, bool], initial_time: float = 0.0,
 ) -> Callable[[float], tuple[Any, int]] | None:  # fmt: skip
-    """Return a function that runs heyoka to an end time, s, and returns last state and number of steps.
+    """Return a function from an end time, s, to (state, steps): heyoka's state at this time, and its number of steps.
 
-    None if heyoka is not installed.
+    The result is None if heyoka is not installed.
+
+    Parameters
+    ----------
+    rates : Program
+        The rates dy/dt.
+    parameters : mapping
+        The values of the parameters of the rates, by name.
+    start : sequence of float
+        The initial state.
+    tolerance : float
+        heyoka's tolerance.
+    settings : dict
+        Further arguments of heyoka's ``taylor_adaptive``, such as ``{"compact_mode": True}``.
+    initial_time : float
+        The time of the initial state, s.
     """
     try:
         import heyoka
@@ -51,7 +66,7 @@ def heyoka_integrator(
     integrator = heyoka.taylor_adaptive(heyoka_system(rates, parameters), list(start), tol=tolerance, **settings)
 
     def run(stop: float) -> tuple[Any, int]:
-        integrator.time = began
+        integrator.time = initial_time
         integrator.state[:] = start
         steps = integrator.propagate_until(stop)[3]
         return integrator.state.copy(), int(steps)

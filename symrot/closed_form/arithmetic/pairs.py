@@ -32,10 +32,10 @@ SMALLEST = 1e-205
 """Smallest moment of inertia that may define a motion, kg m^2."""
 
 GRID = 2.0**-33
-"""Step, in units in the last place of hi, to whose multiples lo is rounded in the components hi + lo of an attitude.
+"""Step of the grid to which lo is rounded in a component hi + lo of an attitude, in ulps of hi.
 
-hi is the double nearest to the component. Because of the rounding, a batch of motions gives the same doubles as single
-motions.
+hi is the double nearest to the component; lo becomes a multiple of GRID ulps of hi. Because of this rounding, a batch
+of motions gives the same doubles as single motions.
 """
 
 _BITS = 600  # 2^600 and its inverse lie inside these bounds
@@ -75,8 +75,8 @@ def attitude(values: Sequence[Number]) -> list[float]:
 def on_grid(values: Sequence[tuple[int, int]]) -> list[float]:
     """Return ratios of integers, given as pairs (top, bottom), as a list hi, lo, hi, lo, ..
 
-    Each sum hi + lo approximates top/bottom. hi is the nearest double; lo is rounded to a multiple of
-    :data:`GRID` times the last bit of hi.
+    Each sum hi + lo approximates top/bottom. hi is the nearest double; lo is rounded to a multiple of :data:`GRID`
+    ulps of hi.
     """
     result: list[float] = []
     for top, bottom in values:

@@ -80,11 +80,14 @@ def functions() -> tuple[Any, Any]:
     Raises
     ------
     CompilerError
-        If there is no C compiler, or if it does not round every operation separately.
+        If there is no C compiler, or if its code does not round after every operation but fuses some, such as a*b + c.
     """
     (compiled,) = load("axial")
     if not compiled.symrot_axial_sound():
-        raise CompilerError("expected a C compiler that rounds every operation separately, got one that combines some")
+        raise CompilerError(
+            "expected a C compiler that rounds after every operation, got one that fuses some, such as a*b + c; "
+            "set CC to another compiler"
+        )
     evaluate, length = compiled.symrot_axial_at, compiled.symrot_axial_length
     pointer, size = ctypes.c_void_p, ctypes.c_ssize_t
     evaluate.argtypes, evaluate.restype = (pointer, size, pointer, pointer, pointer), ctypes.c_int
@@ -129,8 +132,10 @@ class Constants:
     def head(self, transverse: bool) -> list[float]:
         """Return the first 8 numbers of the C struct `axial`, which all motions of the body share.
 
-        In order: 1 if the rotation about the driven axis is damped; the time scale 1; ``transverse`` (1 if the body
-        also rotates about an axis normal to the driven axis); the earliest time, s; two decay rates as sums hi + lo.
+        In order: 1 if the rotation about the driven axis is damped, else 0; the time scale, which is always 1; 1 if
+        ``transverse`` (the body also rotates about an axis normal to the driven axis), else 0; the time, s, before
+        which an exponential may exceed the range of doubles; and -k, 1/s, as hi and lo, where k is the decay rate of
+        the angular velocity about the driven axis; the same for the transverse angular velocity.
         """
         return [float(bool(self._decay)), 1.0, float(transverse), *self._head]
 

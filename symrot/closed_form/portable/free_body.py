@@ -37,15 +37,37 @@ NEGLIGIBLE = mpf(10) ** -150  # size, relative to the largest component of omega
 
 
 class PortableFreeBody:
-    """The motion of a free body, computed with mpmath and NumPy from the arguments of symrot_free_body_prepare."""
+    """The motion of a free body, computed with mpmath and NumPy.
+
+    The arguments are those of the C function symrot_free_body_prepare in :file:`free_body.c`, which computes the
+    constants of the motion: lists hi, lo, hi, lo, .. of doubles, in which each sum hi + lo is one number.
+
+    Parameters
+    ----------
+    inertia : list of 6 floats
+        Principal moments of inertia, kg m^2.
+    omega : list of 6 floats
+        Initial angular velocity along the principal axes, rad/s.
+    quaternion : list of 8 floats
+        Initial attitude, body to space, of any norm except zero.
+    exact : list of 8 floats, or None
+        I2 - I3, I3 - I1, I1 - I2, and the defect divided by the square of the largest moment times the largest
+        component of ``omega``; None if the sums in ``inertia`` and ``omega`` are exact.
+    axes : list of 26 floats, or None
+        The matrix, row by row, that converts components along the principal axes to components along the body axes, and
+        its unit quaternion; None if the body axes are principal axes.
+
+    Raises
+    ------
+    ValueError
+        If a moment is not positive, or if the quaternion is zero.
+    """
 
     @digits(DIGITS)
     def __init__(
         self, inertia: list[float], omega: list[float], quaternion: list[float], exact: list[float] | None,
         axes: list[float] | None,
     ) -> None:  # fmt: skip
-        # each argument of symrot_free_body_prepare is a list hi, lo, hi, lo, .. of doubles; each sum hi + lo is a
-        # number
         moments, w = vector(inertia), vector(omega)
         if min(moments) <= 0 or not any(vector(quaternion)):
             raise ValueError("expected positive moments of inertia and a quaternion that is not zero")
@@ -203,9 +225,9 @@ class PortableFreeBody:
     def _sums(self, t: Floats) -> tuple[Any, Any, Floats]:
         """Return the tuple ((cn, sn, dn), (re, im), phase), each entry at the times t.
 
-        The elliptic functions cn, sn and dn are multiplied by their amplitudes. re and im are the real and imaginary
-        part of a theta series. The phase is that of the theta functions' argument in half revolutions, without the
-        whole ones; it is 0 if ``regime`` is "circular" or "separatrix".
+        cn, sn and dn are the elliptic functions. re and im are the real and the imaginary part of a theta series. If
+        ``regime`` is "hyperbolic", phase is the argument of the elliptic functions in units of their half period 2K,
+        minus the nearest whole number; otherwise it is 0.
         """
         # cn, sn and dn give the angular velocity; re, im and the phase the attitude
         if self.regime == "circular":
@@ -243,8 +265,9 @@ class PortableFreeBody:
 def _differences(inertia: list[float], omega: list[float], w: list[Any]) -> tuple[list[Any], Any]:
     """Return (differences, defect): [I2 - I3, I3 - I1, I1 - I2], and |L|^2 - 2 T I_mid, as mpmath numbers.
 
-    ``inertia`` and ``omega`` are lists hi, lo, hi, lo, .. of doubles, along the principal axes. The defect leaves out
-    the components of omega that are zero in ``w``: omega in another unit, with negligible components set to zero.
+    ``inertia`` and ``omega`` are the moments and the angular velocity along the principal axes, as lists hi, lo, hi,
+    lo, .. of doubles. ``w`` is the same angular velocity in another unit, with zeros for negligible components; these
+    components count as zero in the defect too.
     """
     moments = [Fraction(high) + Fraction(low) for high, low in zip(inertia[::2], inertia[1::2], strict=True)]
     rates = [Fraction(high) + Fraction(low) for high, low in zip(omega[::2], omega[1::2], strict=True)]
@@ -265,8 +288,9 @@ def _canonical(
     """Return (axes, signs, sign of I3 - I2) for which the formulas of the motion hold.
 
     ``axes`` are the indices of the principal axes that :file:`free_body.h` calls e1, e2, e3, so that I2 lies between I1
-    and I3. ``signs`` are 1 or -1 for each of them. ``w`` is the angular velocity; for ``differences`` and ``defect``
-    see :func:`_differences`.
+    and I3. ``signs`` has -1 for each of e1, e2, e3 that points against its principal axis, else 1. ``w`` is the angular
+    velocity along the principal axes, ``differences`` are I2 - I3, I3 - I1 and I1 - I2 of the body's own axes 1, 2, 3,
+    and ``defect`` is |L|^2 - 2 T I_mid, of which only the sign counts.
     """
     above = [differences[2] >= 0, differences[0] >= 0, differences[1] >= 0]  # I_i >= I_(i+1)
     largest = 0 if above[0] and not above[2] else 1 if above[1] else 2

@@ -15,7 +15,13 @@ mpf = mp.mpf
 
 
 class PortableGyrostat:
-    """The motion of a gyrostat, computed from the arguments of the C function symrot_gyrostat_prepare."""
+    """The motion of a gyrostat, computed with mpmath and NumPy.
+
+    The arguments are those of the C function symrot_gyrostat_prepare in :file:`gyrostat.c`, which explains them and
+    computes the constants of the motion. All but ``axis`` are lists hi, lo, hi, lo, .. of doubles, in which each sum
+    hi + lo is one number. ValueError is raised if the moment about a transverse axis is not positive, or if the
+    quaternion is zero.
+    """
 
     regime = "steady"
 
@@ -23,7 +29,6 @@ class PortableGyrostat:
     def __init__(
         self, moments: list[float], rotor: list[float], omega: list[float], quaternion: list[float], axis: list[float]
     ) -> None:
-        # each argument of symrot_gyrostat_prepare is a list hi, lo, hi, lo, .. of doubles; each sum hi + lo is a number
         a, c = vector(moments)
         extra, w = number(*rotor) / a, vector(omega)
         if a <= 0 or not any(vector(quaternion)):

@@ -36,15 +36,18 @@ NEAR = mpf(10) ** -29  # nearer starts to the unstable upright position are refu
 
 
 class PortableHeavyTop:
-    """The motion of a symmetric heavy top, computed from the arguments of the C function symrot_heavy_top_prepare."""
+    """The motion of a symmetric heavy top, computed with mpmath and NumPy.
+
+    The arguments are those of the C function symrot_heavy_top_prepare in :file:`heavy_top.c`, which explains them and
+    computes the constants of the motion. Each is a list hi, lo, hi, lo, .. of doubles, in which each sum hi + lo is one
+    number. ValueError is raised if the moment about a transverse axis is not positive, or if the quaternion is zero.
+    """
 
     @digits(DIGITS)
     def __init__(
         self, moments: list[float], pull: list[float], omega: list[float], quaternion: list[float],
         space: list[float], axes: list[float] | None,
     ) -> None:  # fmt: skip
-        # each argument of symrot_heavy_top_prepare is a list hi, lo, hi, lo, .. of doubles; each sum hi + lo is a
-        # number
         a, c = vector(moments)
         if a <= 0 or not any(vector(quaternion)):
             raise ValueError("expected positive moments of inertia and a quaternion that is not zero")

@@ -93,9 +93,11 @@ class Phase(NamedTuple):
         return sign * np.where(odd, cosine, sine), sign * np.where(odd, -sine, cosine)
 
     def argument(self, t: Floats, stretch: float) -> tuple[Floats, Floats, Floats]:
-        """Return (rest, sign, ``stretch*rest``): rest is the phase in half revolutions less a whole number n of them.
+        """Return (rest, sign, argument) at the times ``t``, for functions that change sign in half a revolution.
 
-        sign is ``(-1)**n``: a phase of 1.3 half revolutions gives rest = 0.3 and sign = -1.
+        rest is the phase in half revolutions minus the nearest whole number n, and sign is ``(-1)**n``: a phase of 1.3
+        half revolutions gives rest = 0.3 and sign = -1. The argument of the hyperbolic functions is ``stretch*rest``,
+        clipped to -LARGEST .. LARGEST; ``stretch`` is the change of this argument in half a revolution.
         """
         rest, halves = self.rest(t, 2)
         whole = 2.0 * rest
@@ -103,10 +105,10 @@ class Phase(NamedTuple):
         return whole, flip, np.clip(stretch * whole, -LARGEST, LARGEST)
 
     def argument_once(self, t: Floats) -> tuple[Floats, Floats, Floats]:
-        """Return the tuple (0, 1, phase), each an array over the times ``t``, for motions that are not periodic.
+        """Return (rest, sign, argument) at the times ``t`` for a motion on the separatrix, which is not periodic.
 
-        It replaces :meth:`argument` on the separatrix, where no half revolutions are removed: the third array is the
-        whole phase, clipped to -LARGEST .. LARGEST.
+        This method replaces :meth:`argument` there. rest is 0 and sign is 1 at all times, since the motion has no half
+        revolutions. The argument of the hyperbolic functions is the phase itself, clipped to -LARGEST .. LARGEST.
         """
         return np.zeros_like(t), np.ones_like(t), np.clip(self.whole(t), -LARGEST, LARGEST)
 

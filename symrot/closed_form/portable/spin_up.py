@@ -58,12 +58,12 @@ def _circle(turns: dd.Pair) -> tuple[Floats, Floats]:
 class PortableSpinUp:
     """The motion of a symmetric body driven about its axis, from its constants and a table of Taylor polynomials.
 
-    The polynomials give the attitude near resonance: the time at which the axial rate is zero, in axes that rotate with
-    the transverse angular velocity. ``table`` may be None if no sample is near resonance.
+    ``constants`` come from :class:`symrot.closed_form.spin_up.integers.Integers`. The polynomials in ``table`` give the
+    attitude near resonance: the time at which the rotating axes have the axial rate zero. ``table`` may be None if no
+    sample is near resonance.
     """
 
     def __init__(self, constants: Sequence[float], table: Floats | None) -> None:
-        # the constants of symrot.closed_form.spin_up.integers; table may be None without samples near resonance
         values = iter(constants)
 
         def take(count: int) -> list[float]:
@@ -108,10 +108,10 @@ class PortableSpinUp:
                 quaternion[chosen] = np.stack([a.real, b.real, b.imag, a.imag], axis=1) @ mapping.T
 
     def _off_resonance(self, side: Any, t: dd.Pair, omega: dd.Pair) -> tuple[Any, Any]:
-        """Return (q0 + i q3, q1 + i q2) of the attitude at times t far from resonance, by the asymptotic series.
+        """Return (q0 + i q3, q1 + i q2) of an attitude at times t far from resonance, by the asymptotic series.
 
-        The attitude is relative to axes that rotate with the transverse angular velocity; ``omega`` is the axial rate
-        in them, zero at resonance. ``side`` has the motion's constants before resonance or after it.
+        The attitude is that of axes that rotate with the transverse angular velocity; ``omega`` is their axial rate at
+        these times, which is zero at resonance. ``side`` has the motion's constants before resonance or after it.
         """
         # the formulas are in symrot.closed_form.spin_up.motion
         time, start, delta, _ = side
@@ -149,10 +149,10 @@ class PortableSpinUp:
         )
 
     def _near_resonance(self, _: dd.Pair, omega: dd.Pair) -> tuple[Any, Any]:
-        """Return (q0 + i q3, q1 + i q2) of the attitude near resonance, by Taylor polynomials.
+        """Return (q0 + i q3, q1 + i q2) of an attitude near resonance, by Taylor polynomials.
 
-        The attitude is relative to axes that rotate with the transverse angular velocity; ``omega`` is the axial rate
-        in them, zero at resonance.
+        The attitude is that of axes that rotate with the transverse angular velocity; ``omega`` is their axial rate,
+        which is zero at resonance.
         """
         # Taylor polynomials in x = Omega/sqrt(s) give the rotation since resonance (x = 0)
         assert self._table is not None

@@ -31,8 +31,9 @@ class _Functions(NamedTuple):
 def limits() -> tuple[float, float, float]:
     """Return (NEAR, WIDE, MOST) of :mod:`symrot.closed_form.spin_up.series`, as arguments for C.
 
-    The asymptotic series of the attitude are accurate for scaled times Omega/sqrt(s) from NEAR on and for
-    kappa = W/sqrt(s) from WIDE on (see there). MOST is the largest angle of rotation, rad, for double-double numbers.
+    The asymptotic series of the attitude are accurate if the scaled time Omega/sqrt(s) is at least NEAR in absolute
+    value, or if kappa = W/sqrt(s) is at least WIDE (see there). MOST is the largest angle of rotation, rad, that is
+    computed with double-double numbers.
     """
     return spin_up_series.NEAR, spin_up_series.WIDE, spin_up_series.MOST
 
@@ -76,7 +77,7 @@ class Compiled:
     Raises
     ------
     CompilerError
-        If the C compiler rejects the source, or does not round every operation separately.
+        If the C compiler rejects the source, or does not round after every operation but fuses some, such as a*b + c.
     """
 
     def __init__(self, axis: int, numbers: list[float]) -> None:
@@ -97,7 +98,7 @@ class Compiled:
         if bound.prepare(self._axis, self._numbers, bound.limits(*limits()), address(table), place):
             raise CompilerError(
                 "expected a C compiler that rounds after every operation, got one that fuses some, such as a*b + c; "
-                "use another compiler"
+                "set CC to another compiler"
             )
         return constants, place, table
 

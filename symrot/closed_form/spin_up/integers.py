@@ -1,9 +1,10 @@
 """A symmetric body under a constant torque about its axis, in integer arithmetic, for any number of revolutions.
 
-At resonance, the axial rate Omega is zero in axes that rotate with the transverse angular velocity. The attitude is a
-product of rotations far before, near and far after resonance (see :mod:`symrot.closed_form.spin_up.motion`). The module
-computes the samples with too many revolutions for double-double numbers and, without a C compiler, the constants for
-NumPy.
+The body's attitude follows from that of the rotating axes: axes that rotate with the transverse angular velocity. Their
+rate about the body's axis, the axial rate Omega, is zero at resonance (see :mod:`symrot.closed_form.spin_up.motion`).
+Their attitude is a product of rotations far before, near and far after resonance. The module computes the samples with
+too many revolutions for double-double numbers. Where there is no C compiler, it also computes the constants of each
+motion, from which NumPy computes all other samples (:mod:`symrot.closed_form.portable.spin_up`).
 
 The formulas are in :file:`spin_up.h`. Proof: ``derivations/driven_rotation.md``.
 """
@@ -121,10 +122,10 @@ class Integers:
         return Near(rounded(self._sweep.across * self._scale / self._root))
 
     def _side(self, omega: Fraction) -> int:
-        """Return which formula gives the attitude at the scaled axial rate ``omega``, which is zero at resonance.
+        """Return which formula gives the attitude at the axial rate ``omega`` (scaled), which is zero at resonance.
 
         1 or -1: the asymptotic series after or before resonance; 0: the Taylor series near resonance. The result is
-        always 1 if the asymptotic series is accurate at every rate.
+        always 1 if the asymptotic series are accurate at every axial rate.
         """
         if self._sweep.series.wide:
             return 1
@@ -135,7 +136,7 @@ class Integers:
 
     @cached_property
     def _resonance(self) -> Quaternion:
-        """The rotation from the start to resonance (the axial rate Omega is 0), a quaternion in units of 2^-FIXED."""
+        """The rotation of the rotating axes from the start to resonance (Omega = 0), in units of 2^-FIXED."""
         side, sweep = self._side(self._start), self._sweep
         if not side:
             return conjugate(self._near.quaternion(self._x(self._start)))
@@ -147,8 +148,8 @@ class Integers:
         """Return (time, Omega, rotation) where the asymptotic series before or after resonance begin to be used.
 
         ``side`` is -1 before resonance (axial rate Omega < 0) and 1 after it. Omega is the axial rate at this time; the
-        rotation takes the body from its attitude at the start to its attitude at this time. For a motion that starts on
-        this side of resonance, the result is 0, the initial axial rate, and the identity.
+        rotation is that of the rotating axes from the start to this time. For a motion that starts on this side of
+        resonance, the result is 0, the initial axial rate, and the identity.
         """
         if self._side(self._start) == side:
             return Fraction(0), self._start, ONE

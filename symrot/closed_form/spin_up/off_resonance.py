@@ -1,9 +1,10 @@
-"""Rotation of a driven symmetric body between two times far from resonance, computed in fractions and integers.
+"""Rotation of the rotating axes of a driven symmetric body between two times far from resonance, in exact arithmetic.
 
-In axes that rotate with the body's transverse angular velocity (length W), the body's angular velocity is
-``(W, 0, Omega)``, with ``Omega = Omega0 + s t``; resonance is at Omega = 0. The body rotates about a vector n (see
-:mod:`symrot.closed_form.spin_up.series`), by the integral of ``S = sqrt(Omega^2 + W^2)`` plus the change of a small
-angle delta. The integral over a time t is, with S0 = S at the start,
+These axes rotate with the body's transverse angular velocity, whose length is W; their own angular velocity is
+``(W, 0, Omega)``, with ``Omega = Omega0 + s t`` (see :mod:`symrot.closed_form.spin_up.motion`). Resonance is at
+Omega = 0. The axes rotate about a vector n (see :mod:`symrot.closed_form.spin_up.series`), by the integral of their
+angular speed ``S = sqrt(Omega^2 + W^2)`` plus the change of a small angle delta. The integral over a time t is, with
+S0 = S at the start,
 
     t/(2 D) (E sqrt(1 + z^2) + W^2 asinh(z)/z),  E = S0 S + Omega0 Omega,  D^2 = (W^2 + E)/2,  z = s t/(2 D).
 
@@ -24,7 +25,10 @@ from symrot.kinematics.hamilton import conjugate, hamilton
 __all__ = ["FIXED", "ONE", "Quaternion", "Sweep", "about_third", "fixed", "product"]
 
 FIXED = 144
-"""Bits after the binary point of unit quaternions in fixed-point arithmetic, four times as fast as Fractions."""
+"""Number of bits after the binary point in the fixed-point integers that are the components of unit quaternions.
+
+Fixed-point arithmetic is four times as fast as arithmetic with Fractions.
+"""
 
 Quaternion = tuple[int, int, int, int]
 
@@ -78,11 +82,11 @@ def _polynomial(coefficients: Floats, y: float) -> float:
 
 
 class Sweep:
-    """The rotation of a driven symmetric body far from resonance (Omega = 0).
+    """The rotation of the rotating axes of a driven symmetric body far from resonance (Omega = 0).
 
-    ``across`` is W, the constant length of the transverse angular velocity, rad/s; ``s`` is the rate, rad/s^2, at which
-    Omega, the axial rate in the axes that rotate with the transverse angular velocity, grows. ``series`` gives the axis
-    and the angle of the rotation; it depends on kappa^2 = W^2/s alone.
+    ``across`` is W, the constant length of the body's transverse angular velocity, rad/s. The rotating axes rotate with
+    the transverse angular velocity; Omega is their rate about the body's axis, and ``s`` is the rate, rad/s^2, at which
+    Omega grows. ``series`` gives the axis and the angle of their rotation; it depends on kappa^2 = W^2/s alone.
     """
 
     def __init__(self, across: Fraction, s: Fraction, series: Series) -> None:
@@ -91,35 +95,33 @@ class Sweep:
         self.unit = self._square + (0 if series.wide else Fraction(NEAR) ** 2 * s)
 
     def speed(self, omega: Fraction) -> Fraction:
-        """Return the angular speed S = sqrt(omega^2 + W^2), rad/s, of the body when the axial rate is ``omega``.
-
-        W is the length of the transverse angular velocity; the speed is that in axes that rotate with this velocity.
-        """
+        """Return S = sqrt(omega^2 + W^2), rad/s, the angular speed of the rotating axes at the axial rate ``omega``."""
         return number.sqrt(rounded(omega * omega + self._square))
 
     def _direction(self, omega: Fraction) -> tuple[float, float, float]:
-        """Return (W/S, omega/S, y) when the axial rate is ``omega``, with the angular speed S = sqrt(omega^2 + W^2).
+        """Return (W/S, omega/S, y) at the axial rate ``omega``, with the angular speed S = sqrt(omega^2 + W^2).
 
-        W is the length of the transverse angular velocity, so that the angular velocity has the direction
-        (W, 0, omega)/S. y is the variable of the polynomials in ``self.series``.
+        The rotating axes have the angular velocity (W, 0, omega), so that (W/S, 0, omega/S) is its direction. y is the
+        variable of the polynomials in ``self.series``.
         """
         # y = unit/S^2
         speed = self.speed(omega)
         return float(self.across / speed), float(omega / speed), float(rounded(self.unit / (speed * speed)))
 
     def delta(self, omega: Fraction) -> float:
-        """Return delta, rad, the angle of rotation in excess of the integral of the speed, at the axial rate ``omega``.
+        """Return the small angle delta, rad, at the axial rate ``omega``.
 
-        Between two times the body rotates by the integral of the speed plus the change of delta.
+        Between two times the rotating axes rotate about n by the integral of their angular speed over time plus the
+        change of delta.
         """
         _, cosine, y = self._direction(omega)
         return cosine * _polynomial(self.series.e, y)
 
     def axes(self, omega: Fraction) -> Quaternion:
-        """Return the rotation that maps the third axis to n, when the axial rate is ``omega``.
+        """Return the rotation that maps the third rotating axis to n, at the axial rate ``omega``.
 
-        n is a vector, fixed in space, near the direction of the angular velocity: the motion is a rotation about n. Its
-        components in the rotating axes come from the polynomials in ``self.series``.
+        n is a vector, fixed in space, near the direction of the angular velocity: the rotating axes rotate about n. The
+        components of n along these axes come from the polynomials in ``self.series``.
         """
         sine, cosine, y = self._direction(omega)
         g, c = _polynomial(self.series.g, y), _polynomial(self.series.c, y)
@@ -132,7 +134,7 @@ class Sweep:
         return product(turn, fixed(number.unit((m3, -m2, m1, Fraction(0)))))
 
     def angle(self, start: Fraction, time: Fraction) -> Fraction:
-        """Return the angle, rad, by which the body rotates in ``time`` s about the vector n of :meth:`axes`.
+        """Return the angle, rad, by which the rotating axes rotate in ``time`` s about the vector n of :meth:`axes`.
 
         n is fixed in space, near the direction of the angular velocity. ``start`` is the axial rate, rad/s, at the
         beginning of this time.
@@ -150,7 +152,7 @@ class Sweep:
         return rounded(steady) + Fraction(self.delta(omega)) - Fraction(self.delta(start))
 
     def rotation(self, start: Fraction, time: Fraction) -> Quaternion:
-        """Return the body's rotation in ``time`` s, as a quaternion of integers in units of 2^-FIXED.
+        """Return the rotation of the rotating axes in ``time`` s, as a quaternion of integers in units of 2^-FIXED.
 
         ``start`` is the axial rate, rad/s, at the beginning of this time.
         """

@@ -1,8 +1,8 @@
-"""Attitude of a driven symmetric body near resonance, by Taylor series about evenly spaced points.
+"""Attitude of the rotating axes of a driven symmetric body near resonance, by Taylor series about evenly spaced points.
 
-The angular velocity is ``(kappa, 0, x)``, in body components, where x is the scaled time (see
-:mod:`symrot.closed_form.spin_up.motion`). The attitude q, with ``q = 1`` at x = 0, is ``alpha = q0 + i q3``,
-``beta = q1 + i q2``, with
+These axes rotate with the transverse angular velocity (see :mod:`symrot.closed_form.spin_up.motion`). Their own angular
+velocity is ``(kappa, 0, x)``, along themselves, where x is the scaled time. Their attitude q, with ``q = 1`` at x = 0,
+is given by ``alpha = q0 + i q3`` and ``beta = q1 + i q2``, with
 
     2 alpha' = i x alpha - kappa beta,  2 beta' = kappa alpha - i x beta.
 
@@ -22,7 +22,7 @@ from symrot.closed_form.spin_up.series import NEAR
 __all__ = ["DEGREE", "PIECES", "Near"]
 
 PIECES = 4
-"""Number of Taylor polynomials of the attitude per unit of the scaled time x: each holds on an interval of 1/4."""
+"""Number of Taylor polynomials of the attitude per unit of the scaled time x: each holds on an interval of 1/PIECES."""
 
 DEGREE = 19
 """Degree of the Taylor polynomials of the attitude near resonance, in the scaled time x.
@@ -36,10 +36,10 @@ _Spinor = tuple[int, int, int, int]  # the complex pair alpha, beta as q0, q3, q
 
 
 class Near:
-    """Attitudes of a driven body near resonance, where its axial rate Omega in the rotating axes is zero.
+    """Attitudes of the rotating axes near resonance, the time at which their axial rate Omega is zero.
 
-    They depend on the scaled time x = Omega/sqrt(s), from -NEAR to NEAR, and on kappa = W/sqrt(s), where s is the rate
-    at which Omega grows, and W the transverse angular velocity.
+    The attitudes depend on the scaled time x = Omega/sqrt(s), from -NEAR to NEAR, and on kappa = W/sqrt(s), where s is
+    the rate at which Omega grows, and W the length of the transverse angular velocity.
     """
 
     def __init__(self, kappa: Fraction) -> None:

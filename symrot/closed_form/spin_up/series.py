@@ -1,15 +1,19 @@
-"""Asymptotic series for a driven symmetric body far from resonance, in inverse powers of its angular velocity.
+"""Asymptotic series for a driven symmetric body far from resonance, in inverse powers of an angular velocity.
 
-In axes that rotate with the transverse angular velocity W, the angular velocity is ``(W, 0, Omega)``. The axial rate
-Omega grows at the constant rate s and is zero at resonance. Divided by sqrt(s), the angular velocity is
-``(kappa, 0, x)``; x is also the time after resonance in units of 1/sqrt(s). A vector n, fixed in space, lies near the
-axis of rotation. With ``r^2 = x^2 + kappa^2`` and ``v = 1/r^2``, the components of n in the rotating axes are
+The rotating axes (see :mod:`symrot.closed_form.spin_up.motion`) rotate with the transverse angular velocity, whose
+length is W. Their own angular velocity is ``(W, 0, Omega)``. The axial rate Omega grows at the constant rate s and is
+zero at resonance. Divided by sqrt(s), the angular velocity is ``(kappa, 0, x)``; its length is
+``r = sqrt(kappa^2 + x^2)``. x is also the time after resonance in units of 1/sqrt(s).
+
+The axes rotate about a vector n, fixed in space, near the direction of their angular velocity. With ``v = 1/r^2``, the
+components of n along the rotating axes are
 
     n1 = (kappa/r) a(v),  n2 = (kappa/r) v c(v),  n3 = (x/r) b(v),  b - a = -v^2 g(v).
 
-The angle of rotation about n exceeds the integral of r by ``delta = (x/r) e(v)``. The series do not converge, but for x
-above :data:`NEAR`, or kappa above :data:`WIDE`, the terms fall below 1e-18 before they grow. They are replaced by
-polynomials in ``y = radius2 v``: radius2 = kappa^2 above :data:`WIDE`, else NEAR^2 + kappa^2, so that y is from 0 to 1.
+The angle of rotation about n is the integral of r over x plus the change of ``delta = (x/r) e(v)``. The functions a, b,
+c, e and g have asymptotic series in powers of v. These series do not converge, but for abs(x) above :data:`NEAR`, or
+kappa above :data:`WIDE`, their terms fall below 1e-18 before they grow. Polynomials in ``y = radius2 v`` replace the
+series: radius2 is kappa^2 if kappa is above :data:`WIDE`, else NEAR^2 + kappa^2, so that y is from 0 to 1.
 
 Source: DLMF 12.9 and 12.10, for the parabolic cylinder functions whose modulus and phase these series are. Proof:
 ``derivations/driven_rotation.md``.
@@ -25,21 +29,21 @@ from symrot.closed_form.build import Floats
 __all__ = ["DEGREE", "MOST", "NEAR", "WIDE", "Series", "series"]
 
 NEAR = 10.0
-"""Ratio x = Omega/sqrt(s) from which on the asymptotic series are accurate for every transverse angular velocity.
+"""Largest scaled time abs(x), before or after resonance, that counts as near resonance.
 
-Omega is the axial rate, which is zero at resonance, and s the rate at which Omega grows. x is also the time after
-resonance in units of 1/sqrt(s), the scaled time.
+x = Omega/sqrt(s), where Omega is the axial rate, which is zero at resonance, and s is the rate at which Omega grows. At
+larger abs(x) the asymptotic series are accurate for every transverse angular velocity.
 """
 
 WIDE = 9.0
-"""Value of kappa = W/sqrt(s) from which on the asymptotic series are accurate at all times.
+"""Smallest kappa = W/sqrt(s) for which the asymptotic series are accurate at all times, even at resonance.
 
-That includes resonance, the time at which the axial rate is zero. W is the transverse angular velocity, and s the rate
-at which the axial rate grows.
+W is the length of the transverse angular velocity, and s is the rate at which the axial rate grows. At resonance the
+axial rate is zero.
 """
 
 MOST = 1e13
-"""Largest angle of rotation, rad, that is computed in sums of two doubles; they have too few digits for larger ones."""
+"""Largest angle of rotation, rad, that is computed with sums of two doubles, which have too few digits beyond it."""
 
 DEGREE = 12
 """Degree of the polynomials that replace the asymptotic series (see :class:`Series`)."""
@@ -52,13 +56,13 @@ _TERMS = 32  # powers of kappa^2 v that are used where kappa^2 v <= _SMALL
 class Series(NamedTuple):
     """Three polynomials that replace the asymptotic series of a driven body, as coefficients, lowest power first.
 
-    The body rotates about a vector n, fixed in space and near the direction of the angular velocity (kappa, 0, x), of
-    the size r. The polynomials ``g`` and ``c`` give the components of n normal to the angular velocity; ``e`` gives
-    delta, the angle of rotation minus the integral of r. Their variable is y = radius2/r^2, from 0 to 1; radius2 is
-    explained at the top of the module.
+    The rotating axes rotate about a vector n, fixed in space and near the direction of their angular velocity
+    (kappa, 0, x), of the length r. The polynomials ``g`` and ``c`` give the components of n normal to the angular
+    velocity. ``e`` gives delta: the angle of rotation between two times is the integral of r plus the change of delta.
+    The variable of the polynomials is y = radius2/r^2, from 0 to 1. The symbols are those of the module's docstring.
     """
 
-    # whether kappa is at least WIDE: the series are then accurate at every x, otherwise for x from NEAR on
+    # whether kappa is at least WIDE: the series are then accurate at every x, otherwise for |x| of at least NEAR
     wide: bool
     # perpendicular to the angular velocity, n has the components (kappa/r) (x/r) v^2 g and (kappa/r) v c
     g: Floats  # times v^2 at y = 1
@@ -74,10 +78,9 @@ def _nodes() -> tuple[Floats, Floats]:
 
 
 def _first(share: float, v: float) -> Floats:
-    """Return the coefficients of the polynomial a in y = radius2/r^2, where (kappa/r) a is the first component of n.
+    """Return the coefficients of a as a polynomial in y, lowest power first; (kappa/r) a is the first component of n.
 
-    n is the vector, fixed in space, about which the body rotates, and r^2 = kappa^2 + x^2 (see :class:`Series`).
-    ``share`` is kappa^2/radius2, and ``v`` is 1/radius2.
+    The symbols are those of the module's docstring. ``share`` is kappa^2/radius2, and ``v`` is 1/radius2.
     """
     # n' = n x (kappa, 0, x) gives c = -(a + 2 v a'), b - a = -v^2 g with g = 3 c + 2 v c', and 2 (1 - kappa^2 v) b' =
     # kappa^2 (b + c), so that each coefficient follows from the previous ones
@@ -97,10 +100,10 @@ def _first(share: float, v: float) -> Floats:
 
 
 def _excess(share: float, v: float, h: Floats) -> Floats:
-    """Return the values of e, for which (x/r) e = delta, at the values of y = radius2/r^2 in :func:`_nodes`.
+    """Return e = delta r/x at the values of y in :func:`_nodes`, where delta is the small angle of rotation about n.
 
-    delta is the angle of rotation about n minus the integral of r (see :class:`Series`). ``share`` is kappa^2/radius2,
-    and ``v`` is 1/radius2. ``h`` are the coefficients of the polynomial in y with ``d delta/dx = kappa^2 h/r^5``.
+    The symbols are those of the module's docstring. ``share`` is kappa^2/radius2, and ``v`` is 1/radius2. ``h`` are the
+    coefficients of the polynomial in y with ``d delta/dx = kappa^2 h/r^5``, lowest power first.
     """
     powers = _nodes()[1]
     if share >= _SMALL:  # from x = 0

@@ -4,7 +4,7 @@
  * In axes e1, e2, e3 of the body, e3 along the axis so that the torque about it is positive, e1 along the transverse
  * angular velocity at time 0, of length W:
  *     omega = W (e1 cos chi + e2 sin chi) + w3 e3,  w3 linear in time,  chi = (C - A)/A times the integral of w3.
- * In axes that rotate with the transverse part the body rotates at (W, 0, Omega), Omega = (C/A) w3, which grows at the
+ * Axes that rotate with the transverse part have the angular velocity (W, 0, Omega). Omega = (C/A) w3 grows at the
  * rate s = M/A. With a = q0 + i q3, b = q1 + i q2 for their attitude: 2 a' = i Omega a - W b, 2 b' = W a - i Omega b.
  * Far from Omega = 0, |Omega| >= 10 sqrt(s), or everywhere if W >= 9 sqrt(s), with S = sqrt(Omega^2 + W^2):
  *     attitude = exp(e3 (P + delta)/2) (rotation that takes e3 to m)^-1 exp(-e2 theta/2),  tan theta = W/Omega,

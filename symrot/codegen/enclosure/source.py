@@ -86,9 +86,9 @@ def enclosure_definitions(enclosure: Enclosure | None, order: int, edges: Sequen
 
 
 def rounding_source(program: Program) -> str:
-    """Return C code that bounds the errors of a program's rates from the rounding of formulas of t in them.
+    """Return C code that bounds the errors that a program's rates have because formulas of t in them are rounded.
 
-    The narrow pulse ``w/((t**2 - 25)**2 + w**2)`` is deformed by the rounding of its phase ``t**2 - 25``. Where such
+    For example, the rounding of the phase ``t**2 - 25`` deforms the narrow pulse ``w/((t**2 - 25)**2 + w**2)``. If such
     errors may be large, the code defines the function ``symrot_roundings``, and ``SYMROT_ROUNDS`` as 1 (otherwise 0).
     """
     try:

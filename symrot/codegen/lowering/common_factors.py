@@ -83,13 +83,18 @@ class Share:
     def _is_preferred(self, pair: Any) -> bool:
         """Return whether ``pair`` becomes a shared node before other pairs that are equally frequent.
 
-        True for a sum, and for a product, quotient or reciprocal without numbers. With indices a and b of nodes, these
-        are ``("mul", (a, b), ())``, ``("mul", (a,), (b,))`` and ``("mul", (), (b,))``.
+        The result is True for a sum, and for a product, quotient or reciprocal without numbers. A pair has the form
+        ``("mul", factors, divisors)`` or ``("add", terms with signs)``. With the indices a and b of two nodes, it is
+        ``("mul", (a, b), ())`` for a*b, ``("mul", (a,), (b,))`` for a/b, ``("mul", (), (b,))`` for 1/b, or
+        ``("add", ((a, 1), (b, sign)))`` for a + b and a - b.
         """
         return pair[0] == "add" or not any(self.nodes[i][0] == "num" for part in pair[1:] for i in part)
 
     def _replace(self, kind: str, pair: tuple[Any, ...], swap: Callable[..., tuple[Any, ...]]) -> None:
-        """Add ``pair``, such as a*b, a/b, 1/b or a + b, as a node, and use this node wherever the pair occurs."""
+        """Add ``pair``, such as a*b, a/b, 1/b or a + b, as a node, and use this node wherever the pair occurs.
+
+        :meth:`_is_preferred` explains the form of ``pair``.
+        """
         if pair not in self.nodes:
             self.nodes.append(pair)
         new = self.nodes.index(pair)

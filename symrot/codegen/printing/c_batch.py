@@ -47,8 +47,12 @@ def _index_in_batch(index: int) -> str:
     return ("k", "n + k")[index] if index < 2 else f"{index}*n + k"
 
 
-def c_batch(program: Program, real: Real, near: bool) -> list[str]:
-    """Return the C text of a program's batch function, which computes n samples."""
+def c_batch(program: Program, real: Real, branch_free: bool) -> list[str]:
+    """Return the C text of a program's batch function, which computes n samples.
+
+    With ``branch_free``, its loops call functions without branches, such as ``symrot_sin`` of ``symrot_math.h``, which
+    compilers vectorise. A block of samples with an angle out of their range is computed again with <math.h>.
+    """
     head = [
         function_head(f"{c_name(program.signature.name, real)}_batch", batch_arguments(program, real)),
         "{",
@@ -59,20 +63,20 @@ def c_batch(program: Program, real: Real, near: bool) -> list[str]:
     used = names_used(program)
     loaded = [f"const {real.type} {a.name}_k = {a.name}[k];" for a in scalars if a.components[0][0] in used]
     of_sample = _with_names(program, each)
-    angles = turning_arguments(of_sample) if near else []
+    angles = turning_arguments(of_sample) if branch_free else []
     parts = split_by_output(program)
     if len(parts) > 1:
-        loops = [_loop(part, real, ("start", "end"), (), "        ", INDEPENDENT, near) for part in parts]
+        loops = [_loop(part, real, ("start", "end"), (), "        ", INDEPENDENT, branch_free) for part in parts]
         return [*head, *_blocks(SPAN), *(line for loop in loops for line in loop), "    }", "}"]
     if not angles:
-        return [*head, *_loop(of_sample, real, ("0", "n"), loaded, "    ", INDEPENDENT, near), "}"]
+        return [*head, *_loop(of_sample, real, ("0", "n"), loaded, "    ", INDEPENDENT, branch_free), "}"]
     # a block of samples with an angle out of the range of symrot_math.h is computed again with <math.h>
     far = " + ".join(f"symrot_far{real.suffix}({c_expression(angle, real, True)})" for angle in angles)
     return [
         *head,
         *_blocks("SYMROT_BLOCK"),
         f"        {real.bits} beyond = 0;",
-        *_loop(of_sample, real, ("start", "end"), loaded, "        ", INDEPENDENT, near=True)[:-1],
+        *_loop(of_sample, real, ("start", "end"), loaded, "        ", INDEPENDENT, branch_free=True)[:-1],
         *statement("beyond", far, "            ", "+="),
         "        }",
         "        const size_t again = beyond == 0 ? start : end;",
@@ -155,7 +159,7 @@ def _stored_last(program: Program) -> list[Argument]:
 
 def _loop(
     program: Program, real: Real, range_: tuple[str, str], loaded: Sequence[str], indent: str, pragma: str = "",
-    near: bool = False,
+    branch_free: bool = False,
 ) -> list[str]:  # fmt: skip
     start, end = range_
     inner = f"{indent}    "
@@ -163,7 +167,7 @@ def _loop(
         *([f"{indent}{pragma}"] if pragma else []),
         f"{indent}for (size_t k = {start}; k < {end}; ++k) {{",
         *(f"{inner}{line}" for line in loaded),
-        *function_body(program, _index_in_batch, inner, real, near, _stored_last(program)),
+        *function_body(program, _index_in_batch, inner, real, branch_free, _stored_last(program)),
         f"{indent}}}",
     ]
 

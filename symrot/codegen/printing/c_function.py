@@ -8,7 +8,7 @@ from struct import pack, unpack
 from textwrap import wrap
 
 from symrot.codegen.printing.banner import WIDTH
-from symrot.codegen.printing.kernel_functions import NEAR, turning_arguments
+from symrot.codegen.printing.kernel_functions import BRANCH_FREE, turning_arguments
 from symrot.formula.program import Argument, Program
 from symrot.formula.tree import FUNCTIONS, Node, names, rename, text
 from symrot.kernels.removable import FUNCTIONS as OWN_FUNCTIONS
@@ -51,13 +51,14 @@ class Real:
         return {name: f"{called}{self.suffix}" for name, called in in_c.items()}
 
     @cached_property
-    def near_functions(self) -> dict[str, str]:
-        """The C name of each function in loops over many samples, without branches: ``sin`` -> ``symrot_sin``.
+    def branch_free_functions(self) -> dict[str, str]:
+        """The C names, for this type, of the functions that loops over many samples call: ``sin`` is ``symrot_sin``.
 
-        Such versions, in ``symrot_math.h`` or printed with the kernel (``symrot_near_sinc``), are valid for moderate
-        angles only. A function without such a version has the name in ``functions``.
+        These are versions without branches, which compilers vectorise. They are defined in ``symrot_math.h`` or printed
+        with the kernel, as ``symrot_near_sinc`` is, and are valid for moderate angles only. A function that has no such
+        version has the same name as in ``functions``.
         """
-        own = {name: f"symrot_near_{name}{self.suffix}" for name in NEAR}
+        own = {name: f"symrot_near_{name}{self.suffix}" for name in BRANCH_FREE}
         shared = {"sin": "sin", "cos": "cos", "atan2": "atan2", "select_ge": "choose_ge"}
         return self.functions | own | {name: f"symrot_{other}{self.suffix}" for name, other in shared.items()}
 
@@ -83,13 +84,13 @@ def _as_float(value: float) -> float:
     return float(unpack("f", pack("f", value))[0])
 
 
-def c_expression(node: Node, real: Real = DOUBLE, near: bool = False) -> str:
+def c_expression(node: Node, real: Real = DOUBLE, branch_free: bool = False) -> str:
     """Return a formula as a C expression of type ``real``, with brackets that preserve the order of evaluation.
 
-    With ``near``, functions without branches are called, such as ``symrot_sin`` of ``symrot_math.h``: compilers
+    With ``branch_free``, functions without branches are called, such as ``symrot_sin`` of ``symrot_math.h``: compilers
     vectorise them, but they are valid for moderate angles only.
     """
-    return text(rename(node, functions=real.near_functions if near else real.functions), 0, real.literal)
+    return text(rename(node, functions=real.branch_free_functions if branch_free else real.functions), 0, real.literal)
 
 
 def c_arguments(program: Program, real: Real = DOUBLE) -> str:
@@ -136,7 +137,7 @@ def _index_of_one(index: int) -> str:
 
 
 def function_body(
-    program: Program, index_of: Callable[[int], str], indent: str, real: Real, near: bool = False,
+    program: Program, index_of: Callable[[int], str], indent: str, real: Real, branch_free: bool = False,
     late: Sequence[Argument] = (),
 ) -> list[str]:  # fmt: skip
     """Return the C statements of a program; a value is computed just before the first output argument that needs it.
@@ -151,7 +152,7 @@ def function_body(
         Text in front of each line.
     real : Real
         The C type of the numbers.
-    near : bool
+    branch_free : bool
         Whether functions without branches, such as ``symrot_sin`` of ``symrot_math.h``, are called; they are valid for
         moderate angles only.
     late : sequence of Argument
@@ -172,14 +173,14 @@ def function_body(
     angles = [node[1] for node in turning_arguments(program) if node[1] in waiting]
     waiting = {name: waiting[name] for name in (*angles, *waiting)}  # gcc calls sincos at the place of the angle
     for name, node in program.temporaries:
-        statements = statement(f"const {real.type} {name}", c_expression(node, real, near), indent)
+        statements = statement(f"const {real.type} {name}", c_expression(node, real, branch_free), indent)
         waiting[name] = (names(node), statements)
     outputs = [a for a in program.signature.arguments if a.role == "out"]
     for argument in late or outputs:
         due = _due(set().union(*(names(results[name]) for name, *_ in argument.components)), waiting)
         lines += [*([""] if due and lines else []), *due, *([""] if due else [])]
         for index, (name, *_) in enumerate(argument.components):
-            target, value = f"{argument.name}[{index_of(index)}]", c_expression(results[name], real, near)
+            target, value = f"{argument.name}[{index_of(index)}]", c_expression(results[name], real, branch_free)
             if late and results[name][0] not in ("symbol", "number"):
                 while name in reserved:
                     name += "_"
@@ -194,7 +195,7 @@ def _reserved(program: Program, real: Real) -> set[str]:
     """Return the names that the C code of a batch already uses for arguments, temporaries, functions and loops."""
     arguments = program.signature.arguments
     inputs = {name for a in arguments if a.role == "in" for name, *_ in a.components}
-    functions = {*real.functions.values(), *real.near_functions.values()}
+    functions = {*real.functions.values(), *real.branch_free_functions.values()}
     words = {"n", "k", "start", "end", "again", "beyond"}
     return {a.name for a in arguments} | inputs | {name for name, _ in program.temporaries} | functions | words
 

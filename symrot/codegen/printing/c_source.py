@@ -17,7 +17,7 @@ from symrot.codegen.printing.c_function import (
     function_head,
     statement,
 )
-from symrot.codegen.printing.kernel_functions import NEAR, called, has_branch_free_calls, own_function
+from symrot.codegen.printing.kernel_functions import BRANCH_FREE, called, has_branch_free_calls, own_function
 from symrot.formula.program import Program
 
 __all__ = ["MATH_HEADER", "c_functions", "c_header", "c_source", "with_head"]
@@ -26,28 +26,28 @@ MATH_HEADER = "symrot_math.h"
 RELATIONS = {"==": "eq", "<": "lt"}
 
 
-def _own_function(name: str, real: Real, near: bool = False) -> list[str]:
+def _own_function(name: str, real: Real, branch_free: bool = False) -> list[str]:
     """Return the C definition of a function, such as sinc, that kernels call and <math.h> does not contain.
 
-    With ``near``, the definition for the loops of batches, without branches.
+    With ``branch_free``, the result is its version without branches, for the loops of batches.
     """
     parameters, temporaries, (relation, left, right, then, other) = own_function(name, real.precision)
     arguments = ", ".join(f"{real.type} {parameter}" for parameter in parameters)
-    called_as = (real.near_functions if near else real.functions)[name]
+    called_as = (real.branch_free_functions if branch_free else real.functions)[name]
     lines = [function_head(called_as, arguments, "static inline ", real.type), "{"]
     for temporary, node in temporaries:
-        lines += statement(f"const {real.type} {temporary}", c_expression(node, real, near), "    ")
-    a, b, x, y = (c_expression(node, real, near) for node in (left, right, then, other))
+        lines += statement(f"const {real.type} {temporary}", c_expression(node, real, branch_free), "    ")
+    a, b, x, y = (c_expression(node, real, branch_free) for node in (left, right, then, other))
     # near x = 0 the limit or a series, elsewhere a quotient such as sin(x)/x
     choice = f"{a} {relation} {b} ? {x} : {y}"
-    if near:  # both are evaluated; a bit mask selects one, so that compilers can vectorise the loop
+    if branch_free:  # both are evaluated; a bit mask selects one, so that compilers can vectorise the loop
         choice = f"symrot_select_{RELATIONS[relation]}{real.suffix}({a}, {b}, {x}, {y})"
     return [*lines, f"    return {choice};", "}", ""]
 
 
-def _includes(program: Program, near: bool) -> list[str]:
+def _includes(program: Program, branch_free: bool) -> list[str]:
     calls = any(op not in ("add", "mul", "div", "neg") for op in program.operations())
-    return [*(["#include <math.h>"] if calls else []), *([f'#include "{MATH_HEADER}"'] if near else [])]
+    return [*(["#include <math.h>"] if calls else []), *([f'#include "{MATH_HEADER}"'] if branch_free else [])]
 
 
 def _prototypes(program: Program, real: Real) -> list[str]:
@@ -82,7 +82,9 @@ def c_header(program: Program, description: Description, reals: Sequence[Real] =
     ]) + "\n"  # fmt: skip
 
 
-def c_source(program: Program, description: Description, reals: Sequence[Real] = (DOUBLE,), near: bool = False) -> str:
+def c_source(
+    program: Program, description: Description, reals: Sequence[Real] = (DOUBLE,), branch_free: bool = False,
+) -> str:  # fmt: skip
     """Return the C99 text of a kernel, which depends only on the arguments, not on time, paths or the environment.
 
     Parameters
@@ -93,10 +95,11 @@ def c_source(program: Program, description: Description, reals: Sequence[Real] =
         Title and other texts for the head comment.
     reals : sequence of Real
         The types of numbers; for each type a function for one sample and a batch function are printed.
-    near : bool
-        Whether batches call the functions of ``symrot_math.h``, which compilers vectorise; see :func:`c_functions`.
+    branch_free : bool
+        Whether batches call functions without branches, such as those of ``symrot_math.h``, which compilers vectorise;
+        see :func:`c_functions`.
     """
-    return with_head(program, description, c_functions(program, reals, near))
+    return with_head(program, description, c_functions(program, reals, branch_free))
 
 
 def with_head(program: Program, description: Description, functions: str) -> str:
@@ -107,7 +110,7 @@ def with_head(program: Program, description: Description, functions: str) -> str
     return "\n".join([*banner(program, description, "/*", " *", " */"), functions])
 
 
-def c_functions(program: Program, reals: Sequence[Real] = (DOUBLE,), near: bool = False) -> str:
+def c_functions(program: Program, reals: Sequence[Real] = (DOUBLE,), branch_free: bool = False) -> str:
     """Return the C99 text of a kernel without its head comment.
 
     Parameters
@@ -116,17 +119,17 @@ def c_functions(program: Program, reals: Sequence[Real] = (DOUBLE,), near: bool 
         The kernel.
     reals : sequence of Real
         The types of numbers; for each type a function for one sample and a batch function are printed.
-    near : bool
-        Whether batches call the functions of ``symrot_math.h``, which compilers vectorise. A block of samples with an
-        angle out of the range of these functions is computed again with the C library.
+    branch_free : bool
+        Whether batches call functions without branches, such as those of ``symrot_math.h``, which compilers vectorise.
+        A block of samples with an angle out of the range of these functions is computed again with the C library.
     """
-    near = near and has_branch_free_calls(program)
-    lines = _includes(program, near)
+    branch_free = branch_free and has_branch_free_calls(program)
+    lines = _includes(program, branch_free)
     lines += [f'#include "{program.signature.name}.h"', ""]
     for real in reals:
         for name in called(program):
             lines += _own_function(name, real)
-            if near and name in NEAR:
-                lines += _own_function(name, real, near=True)
-    parts = ["\n".join([c_function(program, real=real), *c_batch(program, real, near)]) for real in reals]
+            if branch_free and name in BRANCH_FREE:
+                lines += _own_function(name, real, branch_free=True)
+    parts = ["\n".join([c_function(program, real=real), *c_batch(program, real, branch_free)]) for real in reals]
     return "\n".join(lines) + "\n" + "\n\n".join(parts) + "\n"

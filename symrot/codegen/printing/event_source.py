@@ -109,7 +109,11 @@ def event_definitions(
 
 
 def _jumps(tape: Tape) -> list[str]:
-    """Return C statements that return whether an operation of the tape may jump, given the ranges x0, x1, ..."""
+    """Return C statements that return whether the value of a formula may jump.
+
+    ``tape`` lists the operations of the formula, in the order of computation. The C variables x0, x1, ... hold the
+    ranges of the results of these operations.
+    """
     jumps = []
     for op in tape.operations:
         if op.kind in JUMPS:
@@ -129,9 +133,9 @@ def _switch(
     """Return the first lines of a C function body: ``head``, then ``switch (which)`` with a case per event function.
 
     Case k defines the values ``texts[k]``, such as ``v3 = v1*v2``, as constants of the C type ``kind``. The case ends
-    with the statements ``own_ends[k]``; if ``own_ends`` is empty, all cases end with ``ends``. In these statements
-    ``{last}`` becomes the index of the operation of ``tapes[k]`` that gives the result. The caller adds the C lines
-    after the switch.
+    with the statements ``own_ends[k]``; if ``own_ends`` is empty, all cases end with ``ends``. ``tapes[k]`` lists the
+    operations of event function k; in the final statements ``{last}`` becomes the index of the operation that gives its
+    value. The caller adds the C lines after the switch.
     """
     lines = ["{", "    (void)t;", "    (void)y;", "    (void)p;", *head, "    switch (which) {"]
     for number, (tape, statements) in enumerate(zip(tapes, texts, strict=True)):
@@ -142,12 +146,15 @@ def _switch(
 
 
 def _span(tape: Tape, states: Sequence[str], edges: Sequence[int]) -> tuple[int, int]:
-    """Return (first, stop): the states on which a tape's formula depends have indices from first to stop - 1."""
+    """Return (first, stop): the states on which an event function depends have indices from first to stop - 1.
+
+    ``tape`` lists the operations of the function. The range is extended to whole blocks of states that share one error:
+    block j has the states ``edges[j]`` to ``edges[j + 1] - 1``. Without any state, the result is (0, 0).
+    """
     used = {op.value for op in tape.operations if op.kind == "symbol"}
     places = [i for i, name in enumerate(states) if name in used]
     if not places:
         return 0, 0
-    # extended to whole blocks of states that share one error, such as the quaternion
     return max(edge for edge in edges if edge <= places[0]), min(edge for edge in edges if edge > places[-1])
 
 
@@ -160,15 +167,18 @@ def _largest(terms: Sequence[str]) -> str:
 
 
 def _statements(index: int, op: Operation, places: dict[str, str], known: dict[str, str]) -> tuple[str, str]:
-    """Return two C definitions for operation number ``index`` of a tape: for 3, its value v3 and error bound e3."""
+    """Return two C definitions for operation ``op``, which has the number ``index`` in its formula.
+
+    For number 3, they define its value v3 and the bound e3 of the error of v3. ``places`` maps an input to C, such as
+    ``y[2]``, and ``known`` a state to the C text of its error.
+    """
     v, e = f"v{index}", f"e{index}"  # errors to first order
     values, errors = [f"v{i}" for i in op.operands], [f"e{i}" for i in op.operands]
     own = f"SYMROT_ROUNDING*fabs({v})"
     if op.kind == "number":
         return f"{v} = {c_expression(('number', op.value))}", f"{e} = {'0.0' if float(op.value) == op.value else own}"
     if op.kind == "symbol":
-        # places: input -> C, such as y[2]; known: state -> C text of its error; other inputs have the error of one
-        # rounding
+        # inputs that are not in known have the error of one rounding
         return f"{v} = {places[op.value]}", f"{e} = {known.get(op.value, own)}"
     if op.kind == "neg":
         return f"{v} = -{values[0]}", f"{e} = {errors[0]}"

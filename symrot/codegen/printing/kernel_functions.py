@@ -11,10 +11,10 @@ from symrot.formula.program import Argument, Program
 from symrot.formula.tree import Node, children, parse
 from symrot.kernels.removable import FUNCTIONS, REMOVABLE, Removable
 
-__all__ = ["NEAR", "called", "has_branch_free_calls", "own_function", "series", "turning_arguments", "unpacked"]
+__all__ = ["BRANCH_FREE", "called", "has_branch_free_calls", "own_function", "series", "turning_arguments", "unpacked"]
 
 TURNING = ("sinc", *REMOVABLE)  # functions of symrot that call sine or cosine of their argument
-NEAR = (*TURNING, "arc_ratio")  # functions of symrot that have a form without branches, for batches
+BRANCH_FREE = (*TURNING, "arc_ratio")  # functions of symrot that have a form without branches, for batches
 
 Statement = tuple[str, Node]  # name of a temporary, formula
 ONE, ZERO = ("number", Fraction(1)), ("number", Fraction(0))
@@ -48,7 +48,7 @@ def turning_arguments(program: Program) -> list[Node]:
 
 def has_branch_free_calls(program: Program) -> bool:
     """Return whether a program calls a function, such as sin or sinc, that a batch can compute without branches."""
-    return any(name in ("sin", "cos", "atan2", "select_ge", *NEAR) for name, _ in _calls(program))
+    return any(name in ("sin", "cos", "atan2", "select_ge", *BRANCH_FREE) for name, _ in _calls(program))
 
 
 def called(program: Program) -> list[str]:

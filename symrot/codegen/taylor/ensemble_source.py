@@ -1,8 +1,8 @@
 """C code of the Taylor coefficients of an ensemble: each SIMD lane (element of a vector) holds one trajectory.
 
 The jet is the list of the Taylor coefficients of all states at one time. A convolution ``sum(u[k] v[n-k], k = 0..n)``
-is coefficient n of the product of two series u and v; its inner terms are those for k = 1 to n - 1. A slot is a C
-variable that sums up several convolutions. The code is placed between :file:`lanes.h` and :file:`lanes.c` of
+is coefficient n of the product of two series u and v; its inner terms are those for k = 1 to n - 1. A slot is a sum of
+several convolutions, each added or subtracted. The code is placed between :file:`lanes.h` and :file:`lanes.c` of
 :mod:`symrot.ensemble`.
 """
 
@@ -36,7 +36,7 @@ class Convolution(NamedTuple):
 
 
 class Slot(NamedTuple):
-    """A C variable that sums up several convolutions: ``terms`` holds pairs (sign, convolution)."""
+    """A sum of several convolutions, each added or subtracted: ``terms`` holds pairs (sign, convolution)."""
 
     terms: tuple[tuple[int, Convolution], ...]
 
@@ -95,8 +95,9 @@ def multiplications(program: Program, order: int) -> int:
 class _Jet:
     """Writes the C function that computes the Taylor coefficients of all states: coefficients 0, then 1, and so on.
 
-    A slot is a C variable that sums up several convolutions ``sum(u[k] v[n-k])``. From n = 2 on, a C loop first adds up
-    the terms k = 1 to n - 1 of slot i, in the C variable ``a{i}`` for even n and ``b{i}`` for odd n.
+    A slot is a sum of several convolutions ``sum(u[k] v[n-k], k = 0..n)``, each added or subtracted. From n = 2 on, a C
+    loop first adds up the inner terms of slot i, k = 1 to n - 1, in the C variable ``a{i}`` for even n and ``b{i}`` for
+    odd n.
     """
 
     def __init__(self, system: Recurrences) -> None:
@@ -115,7 +116,7 @@ class _Jet:
         self.divided = [i for i, s in enumerate(self.series) if s.rule in ("quotient", "root", "primitive")]
 
     def _make_slots(self) -> None:
-        """Assign each convolution to a slot: a C variable that holds one convolution or the sum of several.
+        """Assign each convolution to a slot, which holds one convolution or a sum of several.
 
         Products that occur with equal weights in the same sums share a slot.
         """
@@ -308,8 +309,10 @@ class _Jet:
     def order(self, n: str, stage: str, sums: str) -> list[str]:
         """Return the C statements that compute coefficient ``n`` of all series, then coefficient n + 1 of the states.
 
-        The C text ``n`` is ``"0"``, ``"1"``, ``"n"`` (an even index from 2 on) or ``"m"`` (an odd index from 3 on);
-        ``stage`` is then "first", "second", "later" and "later", and ``sums`` is "", "", "a" and "b".
+        ``n`` is the index as C text: ``"0"``, ``"1"``, ``"n"`` (an even index from 2 on) or ``"m"`` (an odd index from
+        3 on). ``stage`` is "first" for the index 0, "second" for 1, else "later". ``sums`` is the first letter of the C
+        variables that hold the sums of inner terms: "a" for ``"n"`` and "b" for ``"m"``. For 0 and 1, which have no
+        inner terms, ``sums`` is empty.
         """
         lines: list[str] = []
         made: set[int] = set()
@@ -348,9 +351,10 @@ class _Jet:
     def loops(self) -> list[str]:
         """Return the C loops that add up terms of all convolutions for two coefficients: n (even) and n + 1.
 
-        Slot i is a sum of convolutions ``sum(u[k] v[n-k])``. The loops set the C variable ``a{i}`` to the sum of its
-        terms k = 1 to n - 1 for coefficient n, and ``b{i}`` to the sum of its terms k = 2 to n - 1 for coefficient
-        n + 1; coefficient n itself is still unknown.
+        Slot i is a sum of convolutions ``sum(u[k] v[n-k])``. For coefficient n, the loops set the C variable ``a{i}``
+        to the sum of its terms u[k] v[n-k] for k = 1 to n - 1. For coefficient n + 1, they set ``b{i}`` to the sum of
+        its terms u[k] v[n+1-k] for k = 2 to n - 1. The terms k = 1 and k = n need coefficient n, which is still
+        unknown.
         """
         # each number is read once for both coefficients
         return [line for group in self._groups() for line in self._loop(group)]
@@ -376,7 +380,7 @@ class _Jet:
     def _load(self, group: Sequence[int]) -> int:
         """Return the number of registers that a C loop needs for ``group``, a list of indices of slots.
 
-        A slot is a C variable that sums up convolutions.
+        A slot is a sum of convolutions.
         """
         terms = [c for i in group for _, c in self.slots[i].terms]
         # two sums of each slot, the values of each series u for two k, and one value of each series v
@@ -403,11 +407,13 @@ class _Jet:
     def _products(
         self, terms: Sequence[tuple[int, int, Convolution]], left: Sequence[int], right: Sequence[int]
     ) -> list[str]:
-        """Return the C loop over k, two values at a time, that adds up products u[k] v[n-k] of two series u and v.
+        """Return the C code that adds up the inner terms of convolutions of two different series u and v.
 
-        ``terms`` are (i, sign, convolution of u and v). With the sign, the loop adds products for coefficient n of slot
-        i (a sum of convolutions) to the C variable ``a{i}``, and for coefficient n + 1 to ``b{i}``. ``left`` and
-        ``right`` are the indices of all series u and v.
+        Each of ``terms`` is (i, sign, convolution), which stands for one convolution of slot i (a sum of convolutions).
+        A C loop runs over k in steps of 2. For each convolution it adds ``sign`` times the products u[k] v[n-k] and
+        u[k+1] v[n-k-1] to the C variable ``a{i}``, for coefficient n; and ``sign`` times u[k+1] v[n-k] and
+        u[k+2] v[n-k-1] to ``b{i}``, for coefficient n + 1. ``left`` are the indices of all series u, and ``right`` of
+        all series v.
         """
         lines = ["{", *(f"    symrot_v f{i} = {self.at(i, '1')};" for i in left)]
         lines.append("    for (int64_t k = 1; k < n - 1; k += 2) {")
@@ -426,10 +432,11 @@ class _Jet:
         return [*lines, "}"]
 
     def completed_sums(self) -> list[str]:
-        """Return the C statements that complete ``b{i}``, the sum of the inner terms of slot i for coefficient n + 1.
+        """Return the C statements that add the missing terms u[1] v[n] and u[n] v[1] to the sums ``b{i}``.
 
-        A slot is a sum of convolutions. The C loops of :meth:`loops` left out the terms u[1] v[n] and u[n] v[1], since
-        coefficient n was still unknown.
+        The C variable ``b{i}`` is the sum of the inner terms of slot i (a sum of convolutions) for coefficient n + 1.
+        The C loops of :meth:`loops` left out these two terms, because coefficient n was still unknown; it is known
+        where these statements are placed.
         """
         lines: list[str] = []
         for i, slot in enumerate(self.slots):

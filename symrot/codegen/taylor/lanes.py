@@ -213,9 +213,10 @@ class _Placer:
         return Layout(self.series, tuple(self.rows), tuple(rates), tuple(self.columns), own, self.system.states, seeds)
 
     def _shape(self, i: int) -> tuple[int, ...]:
-        """Return two numbers by which series with the same rule are sorted, so that similar series share a SIMD vector.
+        """Return the key by which series with the same rule are sorted, so that similar series share a SIMD vector.
 
-        For series ``i`` they are (whether it is an exponential, minus the number of products that only sums contain).
+        The key of series ``i`` is (1 if it is an exponential else 0, -m), where m is the number of its operands that
+        are products computed only as summands of sums (see :meth:`_inlined`).
         """
         s = self.series[i]
         products = sum(operand in self.inlined for operand in s.operands)

@@ -1,21 +1,27 @@
 """Recurrences for the Taylor coefficients of a motion, built from its rates dy/dt with one rule for each operation.
 
-A series is the list of Taylor coefficients ``u[0], u[1], ...`` of one quantity along the motion. A rule computes
-coefficient n of the result from coefficients up to n of the operands; for the states, ``x[n+1] = rate[n]/(n+1)``. Rules
-with sums over n terms (convolutions):
+A series is the list of Taylor coefficients ``u[0], u[1], ...`` of one quantity u along the motion, in powers of the
+time t from the centre of the expansion. A rule computes coefficient n of the result w from coefficients up to n of the
+operands; for the states, ``x[n+1] = rate[n]/(n+1)``. The quantity ``t u'`` has the coefficients ``n u[n]``. The rules
+for products, quotients and square roots contain sums over n terms (convolutions):
 
 =====================  ====================================================================================
 product ``w = u v``    ``w[n] = sum(u[k] v[n-k], k = 0..n)``; a square adds each pair once and doubles it
 quotient ``w v = u``   ``w[n] = (u[n] - sum(v[k] w[n-k], k = 1..n))/v[0]``
 root ``w w = u``       ``w[n] = (u[n] - sum(w[k] w[n-k], k = 1..n-1))/(2 w[0])``
-driven                 ``n w[n] = s sum(e[k] v[n-k], k = 1..n)``: ``t w' = s e v``, ``e = t u'``; exp, sin, tan, sech
-primitive              ``n w[n] = (g[n] - sum(e[k] v[n-k], k = 1..n-1))/v[0]``: ``v e = g``, ``e = t w'``; log, atan
-clock                  ``n w[n] = s a v[n-1]``: exp, sin, cos, sinh, cosh of ``a t + b``
 =====================  ====================================================================================
 
-In the rules driven and clock, ``s v`` is the derivative of the function: for cos, v is sin and s = -1. In the rule
-primitive, ``g/v`` is ``t w'``: for ``w = log(u)``, g is ``t u'`` and v is u. Here t is the time from the centre of the
-expansion. Source: A. Griewank, A. Walther, Evaluating Derivatives, 2nd ed., sections 10.2 and 13.2.
+Three more rules are for functions w = f(u) of one quantity u:
+
+- driven, for exp, sin, cos, sinh, cosh, tan, tanh and sech: f' is written as ``s v``, where s is 1 or -1 and v is
+  another series or w itself; for cos, v is sin(u) and s is -1. With ``e = t u'``, ``t w' = s e v`` gives
+  ``n w[n] = s sum(e[k] v[n-k], k = 1..n)``.
+- primitive, for log, asin, acos, atan and atan2: ``t w'`` is a quotient ``g/v`` of two series; for log, g is ``t u'``
+  and v is u. With ``e = t w'``, ``v e = g`` gives ``n w[n] = (g[n] - sum(e[k] v[n-k], k = 1..n-1))/v[0]``.
+- clock, for exp, sin, cos, sinh and cosh of a linear function of time with the slope a: with s and v as in driven,
+  ``n w[n] = s a v[n-1]``, without a sum.
+
+Source: A. Griewank, A. Walther, Evaluating Derivatives, 2nd ed., sections 10.2 and 13.2.
 
 Standard library only: the recurrences of a cached kernel are built without SymPy.
 """

@@ -76,7 +76,8 @@ def checked_system(program: Program, edges: Sequence[int], scales: Sequence[floa
     if [*edges[:1], *edges[-1:]] != [0, count] or list(edges) != sorted(set(edges)) or len(scales) != len(edges) - 1:
         raise InputError(
             f"blocks: expected block edges that increase from 0 to {count} (the number of states), and one scale per "
-            f"block, got edges {list(edges)} and scales {list(scales)}"
+            "block, the size to which its errors are relative (a block is a group of consecutive states whose errors "
+            f"are measured together), got edges {list(edges)} and scales {list(scales)}"
         )
     return system
 
@@ -200,10 +201,11 @@ class _Jet:
         return value or "V_ALL(0.0)"
 
     def _weights_of_time(self, row: Row) -> str:
-        """Return the C text of a vector: the coefficient of the time in each of the four sums of ``row``.
+        """Return the C text of a vector: the coefficient of the time in each of the four sums in ``row``.
 
-        The text is empty if no sum contains the time. The time is the sum t + t_low of two doubles; the sums contain t,
-        and :meth:`row` adds t_low times this vector.
+        The row consists of four series that are sums and are computed together, in one SIMD vector. The text is empty
+        if no sum contains the time. The time is t + t_low, a sum of two doubles; the C code of the sums contains t
+        alone, and :meth:`row` adds t_low times this vector.
         """
         weights: list[Node] = []
         for number in row.lanes:
@@ -331,7 +333,11 @@ class _Jet:
         return f"V_LANE(r{row}, {lane})"
 
     def seeds(self) -> list[str]:
-        """Return the C statements that compute the auxiliary states at the start of a step, their coefficients 0."""
+        """Return the C statements that compute the auxiliary states at the start of a step.
+
+        Auxiliary states are functions of the attitude that are integrated like states. Their values at the start are
+        coefficient 0 of their Taylor series.
+        """
         lines: list[str] = []
         formulas = [formula for row in self.layout.seeds for formula in row]
         places = {name: f"V_LANE({self.constant((('symbol', name),) * LANES)}, 0)"
@@ -359,8 +365,10 @@ class _Jet:
     def order(self, n: str, stage: str, sums: str) -> list[str]:
         """Return the C statements that compute coefficient ``n`` of all series, then coefficient n + 1 of the states.
 
-        The C text ``n`` is ``"0"``, ``"1"``, ``"n"`` (an even index from 2 on) or ``"m"`` (an odd index from 3 on);
-        ``stage`` is then "first", "second", "later" and "later", and ``sums`` is "", "", "a" and "b".
+        ``n`` is the index as C text: ``"0"``, ``"1"``, ``"n"`` (an even index from 2 on) or ``"m"`` (an odd index from
+        3 on). ``stage`` is "first" for the index 0, "second" for 1, else "later". ``sums`` is the first letter of the C
+        variables that hold the sums of the terms k = 1 to n - 1 of the convolutions: "a" for ``"n"`` and "b" for
+        ``"m"``. For 0 and 1, which have no such terms, ``sums`` is empty.
         """
         lines: list[str] = []
         done, packed = set(range(self.state_rows)), set[Pack]()
@@ -392,9 +400,10 @@ class _Jet:
     def loops(self) -> list[str]:
         """Return the C loops that add up terms of all convolutions for two coefficients: n (even) and n + 1.
 
-        Column i is a vector of four convolutions ``sum(a[k] b[n-k])``. The loops set the C variable ``a{i}`` to the sum
-        of its terms k = 1 to n - 1 for coefficient n, and ``b{i}`` to the sum of its terms k = 2 to n - 1 for
-        coefficient n + 1; coefficient n itself is still unknown.
+        The layout groups the convolutions by four: column i of the layout is a SIMD vector of four convolutions
+        ``sum(a[k] b[n-k])``. For coefficient n, the loops set the C variable ``a{i}``, a vector, to the sums of the
+        terms a[k] b[n-k] for k = 1 to n - 1. For coefficient n + 1, they set ``b{i}`` to the sums of the terms
+        a[k] b[n+1-k] for k = 2 to n - 1; the terms k = 1 and k = n need coefficient n, which is still unknown.
         """
         # each number is read once for both coefficients
         lines: list[str] = []
@@ -422,10 +431,11 @@ class _Jet:
         return lines
 
     def completed_sums(self) -> list[str]:
-        """Return the C statements that complete ``b{i}``, the inner terms of column i for coefficient n + 1.
+        """Return the C statements that add the missing terms a[1] b[n] and a[n] b[1] to the sums ``b{i}``.
 
-        Column i is a vector of four convolutions. The C loops of :meth:`loops` left out the terms a[1] b[n] and
-        a[n] b[1], since coefficient n was still unknown.
+        The C variable ``b{i}`` has the sums, for coefficient n + 1, of the terms k = 1 to n of column i, a vector of
+        four convolutions. The C loops of :meth:`loops` left out these two terms, because coefficient n was still
+        unknown; it is known where these statements are placed.
         """
         lines: list[str] = []
         for i, (a, b, _) in enumerate(self.layout.columns):

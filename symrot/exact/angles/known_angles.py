@@ -1,4 +1,4 @@
-"""Multiples of inverse trigonometric functions, such as 2 asin(u), as angles whose sine and cosine are computable."""
+"""Known angles: multiples of inverse trigonometric functions, such as 2 asin(u), whose sine and cosine are roots."""
 
 from collections.abc import Iterator
 from fractions import Fraction
@@ -8,18 +8,22 @@ from sympy import Expr
 from symrot.exact.angles.angles import LinearForm
 from symrot.exact.angles.inverse import INVERSE, cosine_sine
 
-__all__ = ["halved", "is_bound", "parts_of", "unbound"]
+__all__ = ["halved", "is_known_angle", "parts_of", "without_known_angles"]
 
 
-def is_bound(atom: Expr, coefficient: Fraction) -> bool:
-    """Return whether ``coefficient * atom`` has a sine and a cosine made of roots alone, as ``2*asin(u)`` has."""
+def is_known_angle(atom: Expr, coefficient: Fraction) -> bool:
+    """Return whether the sine and cosine of ``coefficient * atom`` can be written with roots instead of functions.
+
+    ``atom`` must be an inverse trigonometric function, and the denominator of ``coefficient`` at most 8 and a power of
+    two. For ``2*asin(u)`` the result is True: its sine is ``2*u*sqrt(1 - u^2)``. For ``2*x`` it is False.
+    """
     # halving an angle whose cosine and sine are known gives square roots
     return type(atom) in INVERSE and coefficient.denominator in (1, 2, 4, 8)
 
 
-def unbound(form: LinearForm) -> LinearForm:
-    """Return an angle without its multiples of inverse functions (see :func:`is_bound`): ``x + 2*asin(u)`` gives x."""
-    return LinearForm(tuple(term for term in form.terms if not is_bound(*term)), form.half_turns)
+def without_known_angles(form: LinearForm) -> LinearForm:
+    """Return an angle without its terms that are known angles, such as ``2*asin(u)``: ``x + 2*asin(u)`` gives x."""
+    return LinearForm(tuple(term for term in form.terms if not is_known_angle(*term)), form.half_turns)
 
 
 def halved(coefficient: Fraction) -> Iterator[tuple[int, int]]:

@@ -12,7 +12,7 @@ from sympy import Expr, pi
 from symrot.exact.angles import cyclotomic
 from symrot.exact.angles.angles import LinearForm, chebyshev, constant_cosine_sine
 from symrot.exact.angles.inverse import cosine_sine
-from symrot.exact.angles.known_angles import halved, is_bound
+from symrot.exact.angles.known_angles import halved, is_known_angle
 from symrot.exact.ring.polynomials import univariate
 from symrot.exact.ring.ratio import Ratio, Ratios, TooLarge
 
@@ -46,7 +46,8 @@ class Angles:
         Atom -> index of the variable for the cosine or sine of its base angle.
     fine, fine_place : int
         N, and the index of the ring's variable that stands for 2 cos(pi/N). The sines and cosines of constant angles
-        are polynomials in this variable: N = 14 for 3 pi/7. N is 0 if the ring has no such variable.
+        that are no multiples of pi/24 are polynomials in this variable: N = 14 for 3 pi/7. N is 0 if the ring has no
+        such variable.
     known : dict
         Angle -> (cosine, sine), the results of :meth:`cosine_sine` so far.
     """
@@ -74,7 +75,7 @@ class Angles:
         c0, s0 = map(self.ratio, constant_cosine_sine(form.half_turns))
         pairs = [(c0, s0)]
         for atom, coefficient in form.terms:
-            if is_bound(atom, coefficient):
+            if is_known_angle(atom, coefficient):
                 pairs += self._known_angle(atom, coefficient)
                 continue
             if atom is pi and self.fine:

@@ -25,10 +25,13 @@ Outside = tuple[tuple[Root | Expr, int], ...]
 
 
 def take_squares(above: PolyElement, below: PolyElement, generators: Sequence[Expr]) -> tuple[Expr, Outside, bool]:
-    """Return (P, pairs (f, n), loose) with ``above/below = P * product(f^(2 n))`` and no f negative.
+    """Take the squares out of a radicand, the fraction ``above/below``; return (P, pairs (f, n), loose).
 
-    ``loose``: whether P may be negative where an f is zero. ``x^2 y`` gives P = y, the pair (``|x|``, 1) and True,
-    because at x = 0, y = -1 the square root of ``x^2 y`` is real, but that of P is not.
+    The radicand is ``P * product(f^(2 n))``, P is a polynomial, and no f is negative. So the square root of the
+    radicand is sqrt(P) times the product of all f^n; n is negative for a divisor. ``loose`` says whether P may be
+    negative where an f is zero. ``x^2 y`` gives P = y, the pair (``|x|``, 1) and True, because at x = 0, y = -1 the
+    square root of ``x^2 y`` is real, but that of P is not. ``generators`` are the expressions for which the variables
+    of the polynomials stand.
     """
     whole = above.ring.clone(domain=ZZ)
     above, below = above.set_ring(whole), below.set_ring(whole)

@@ -26,7 +26,7 @@ from symrot.exact.angles.angles import (
 )
 from symrot.exact.angles.constants import Number, cosine_number, root_number, without_zeros
 from symrot.exact.angles.inverse import INVERSE
-from symrot.exact.angles.known_angles import is_bound, parts_of, unbound
+from symrot.exact.angles.known_angles import is_known_angle, parts_of, without_known_angles
 from symrot.exact.functions import REWRITTEN, TRIGONOMETRIC, is_function_of_time
 from symrot.exact.limits.budget import remembered, spend_ring
 from symrot.exact.limits.operations import spend
@@ -113,8 +113,10 @@ class FormulaRing:
         self.own_logarithms = {leaf for total in self.logarithms.values() for leaf in total.atoms(sympy.log)}
         self._collect([*expressions, *relations, *domain])
 
-        self.bases = base_coefficients(map(unbound, self.forms.values()))
-        self.fine = self._take_fine_constants()
+        # atom of an angle, such as theta -> coefficient of its base angle, such as 1/6 for theta/6
+        self.bases = base_coefficients(map(without_known_angles, self.forms.values()))
+        # N if the ring has a variable for 2 cos(pi/N), else 0
+        self.fine = self._take_constant_angles()
         self.exponent_bases = base_coefficients(self.exponents.values())
         self.dependences: dict[Root, Dependence] = {}
         roots = {root for new in self.radicals.values() for root in new.generators}
@@ -212,7 +214,7 @@ class FormulaRing:
                     # the angle x + pi/8 needs the square roots in cos(pi/8) and sin(pi/8)
                     stack.extend(constant_cosine_sine(form.half_turns))
                 for atom, coefficient in form.terms:
-                    if is_bound(atom, coefficient):
+                    if is_known_angle(atom, coefficient):
                         stack.extend(parts_of(atom, coefficient))
             elif self.logarithms.get(node, node) != node and node not in self.own_logarithms:
                 self.rewritten[node] = self.logarithms[node]
@@ -245,15 +247,16 @@ class FormulaRing:
             return {}
         return dependences({root: self._polynomial(root) for root in places}, self.generators)
 
-    def _take_fine_constants(self) -> int:
-        """If the ring needs a variable for 2 cos(pi/N), delete pi from ``bases`` and return N; otherwise return 0.
+    def _take_constant_angles(self) -> int:
+        """Return N, and delete the atom pi from ``bases``, if the ring needs a variable for 2 cos(pi/N); else return 0.
 
-        The sines and cosines of all constant angles, such as 3 pi/7, are polynomials in 2 cos(pi/14), with N = 14.
+        The ring needs it if constant angles, such as 3 pi/7, are no multiples of pi/24. The sines and cosines of these
+        angles are then polynomials in 2 cos(pi/N), where N is the smallest even multiple of their denominators: 14 for
+        3 pi/7. If N is too large, the result is 0, and pi stays an atom whose base angle has its own sine and cosine.
         """
-        # no such number for multiples of pi/24, which have square roots as sines and cosines, or if N is too large
+        # multiples of pi/24 have square roots as sines and cosines
         if pi not in self.bases or not cyclotomic.has_affordable_degree(self.bases[pi].denominator):
             return 0
-        # pi then needs no sine and cosine of its own
         return cyclotomic.order(self.bases.pop(pi).denominator)
 
     @property
@@ -308,11 +311,13 @@ class FormulaRing:
         return above.quo_ground(below.LC)
 
     def _tangled_numbers(self, rules: Sequence[Rule]) -> dict[int, Number]:
-        """Return a map from the index of a variable to the algebraic number, such as 2^(1/3), that it stands for.
+        """Return a map from the index of a variable to the algebraic number, such as 2^(1/3), for which it stands.
 
-        Several such numbers may satisfy equations that do not follow from the ring's relations. The map is empty if
-        there is no such equation: for a single number, and for square roots of primes alone. The map is also empty if
-        the ring contains the imaginary unit, because symrot proves such equations for real numbers only.
+        Several algebraic numbers may satisfy equations that do not follow from the ring's relations, such as
+        ``sqrt(3 + 2 sqrt(2)) = 1 + sqrt(2)``. If such an equation is possible, the map has all algebraic numbers of the
+        ring. It is empty if none is possible: for a single number, and for square roots of primes alone. It is also
+        empty if the ring contains the imaginary unit, because symrot proves such equations for real numbers only.
+        ``rules`` are the relations of the ring's variables.
         """
         known: dict[int, Number] = {}
         if self.fine:
@@ -322,13 +327,12 @@ class FormulaRing:
             if root.power_expression.is_number and all(n in known for n in occurring([inside[place]])):
                 known[place] = root_number(place, root.index, inside[place], known)
         simple = all(number.index == 2 and not number.needs for number in known.values())
-        # an equation such as sqrt(2)*sqrt(3) = sqrt(6); square roots of primes satisfy none
         return {} if simple or len(known) < 2 or I in self.generators else known
 
     def reduce(self, poly: PolyElement) -> PolyElement:
         """Return the normal form of a polynomial modulo the relations, which is 0 for a sum of multiples of relations.
 
-        Terms whose algebraic number is zero are also removed, such as ``sqrt(2)*sqrt(3) - sqrt(6)``.
+        Algebraic numbers that are zero are also removed, such as ``sqrt(3 + 2 sqrt(2)) - 1 - sqrt(2)``.
         """
         poly = self.relations.reduce(poly)
         return without_zeros(poly, self.numbers) if self.numbers and poly else poly

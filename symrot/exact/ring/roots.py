@@ -2,7 +2,7 @@
 
 Each variable g has a relation ``g^n = P`` with a polynomial P. ``sqrt(P/Q)`` is written ``g/|Q|`` with ``g^2 = P*Q``,
 and a square under a square root is written outside as an absolute value: ``sqrt(x^2 y) = |x| sqrt(y)``. So the variable
-of a square root is never negative. For other roots, ``(P/Q)^(1/n)`` is ``g/Q``.
+of a square root is never negative. For other roots, ``(P/Q)^(1/n)`` is written ``g/Q`` with ``g^n = P*Q^(n-1)``.
 """
 
 from collections.abc import Callable, Iterable
@@ -85,8 +85,9 @@ class Radicand:
 class Radical:
     """A fractional power in factors: ``(rational * product(roots) * product(f^n) / below)^power``.
 
-    The pairs (f, n) are in ``outside``; ``below`` is the denominator Q in ``(P/Q)^(1/n) = g/Q``, 1 for square roots.
-    Example: ``sqrt(4 x^2 y)^3 = (2 sqrt(y) |x|)^3`` has rational 2, root sqrt(y), pair (``|x|``, 1), power 3.
+    The pairs (f, n) are in ``outside``. ``sqrt(4 x^2 y)^3 = (2 sqrt(y) |x|)^3`` has rational 2, root sqrt(y), the pair
+    (``|x|``, 1), below 1 and power 3. In a square root, divisors are among the pairs, with n < 0, and ``below`` is 1.
+    In any other root, of index k and radicand P/Q, ``below`` is Q, and the root is that of ``P Q^(k-1)``.
     """
 
     base: Expr

@@ -102,8 +102,8 @@ def translation_unit(
     if edges[:1] != [0] or edges[-1] != states or edges != sorted(set(edges)) or len(scales) != len(edges) - 1:
         raise InputError(
             f"blocks: expected block edges that increase from 0 to {states} (the number of states), and one scale per "
-            "block (a block is a group of consecutive states whose errors are measured together), got edges "
-            f"{edges} and scales {list(scales)}"
+            "block, the size to which its errors are relative (a block is a group of consecutive states whose errors "
+            f"are measured together), got edges {edges} and scales {list(scales)}"
         )
     bounds = c_text("propagation/enclosures/enclosure.h")
     return "\n".join(
