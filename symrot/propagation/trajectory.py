@@ -110,7 +110,7 @@ class Trajectory(MotionSamples):
     events : tuple of Event, or None
         The requested events. :attr:`at_events` has a trajectory of the samples at each of them.
     sensitivities : Sensitivities or None
-        The derivatives of the motion by initial values and constants, if they were requested.
+        The derivatives of the motion with respect to initial values and constants, if they were requested.
     event_kinds : list of lists of str, or None
         For each event and each of its times: ``"rising"``, ``"falling"`` or ``"touching"``.
 
