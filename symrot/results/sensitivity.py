@@ -184,7 +184,7 @@ class Sensitivities(Mapping[str, Sensitivity]):
 
 
 def event_time_items(variables: Sequence[str], units: Sequence[str], slopes: Floats) -> list[Labelled]:
-    """Return the derivatives of k event times with respect to m variables, labelled by names such as ``t_by_weight``."""
+    """Return the derivatives of k event times with respect to m variables, with labels such as ``t_by_weight``."""
     items = []
     for number, (variable, unit) in enumerate(zip(variables, units, strict=True)):
         name = f"{TIME}{BY}{variable}"
