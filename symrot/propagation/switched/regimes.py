@@ -198,8 +198,7 @@ class Regime:
         return dict((*values, *zip(self.plan.states, y.tolist(), strict=True)))
 
     def rates_since(self, modes: Modes, zero: Instant) -> Callable[[float], list[float]] | None:
-        """Return a function from an epoch to the values of the rates' parameters; None if no value depends on the
-        epoch.
+        """Return a function from an epoch to the values of the rates' parameters, or None if no value depends on it.
 
         The rates are the time derivatives of the states. The function takes the epoch, s after the instant ``zero``.
         With the values that it returns, t in the formulas of the rates is the time since the epoch.
