@@ -182,7 +182,10 @@ class Trajectory(MotionSamples):
 
     @cached_property
     def _states(self) -> Floats:
-        """The states, one row per sample, shape (n, N), joined on first use from the two arrays of a closed form."""
+        """The states, one row per sample, shape (n, N).
+
+        A motion in closed form has two arrays, angular velocities and quaternions, which are joined on first use.
+        """
         return np.concatenate(self._parts, axis=1) if isinstance(self._parts, tuple) else self._parts
 
     @property
