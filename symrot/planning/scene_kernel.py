@@ -128,7 +128,10 @@ class SceneKernel:
 
     @property
     def source(self) -> str:
-        """The C text of the rates: the function ``symrot_rates``, which takes an array of parameters, used or not."""
+        """The C text of the rates: the function ``symrot_rates``.
+
+        One of its arguments is the array of the parameters, even if the rates have no parameters.
+        """
         return self.record["source"]
 
 

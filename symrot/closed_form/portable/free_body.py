@@ -10,7 +10,6 @@ from functools import partial
 from typing import Any
 
 import numpy as np
-from mpmath import mp, mpf
 
 from symrot.closed_form.build import Floats
 from symrot.closed_form.portable.phases import (
@@ -27,9 +26,12 @@ from symrot.closed_form.portable.phases import (
     vector,
 )
 from symrot.closed_form.portable.quaternions import Axes, mapping, matrix_quaternion, unit
+from symrot.formula.precision import digits, mp
 from symrot.kinematics.hamilton import conjugate, hamilton
 
 __all__ = ["PortableFreeBody"]
+
+mpf = mp.mpf
 
 NEGLIGIBLE = mpf(10) ** -150  # size, relative to the largest component of omega, that counts as zero
 
@@ -61,7 +63,7 @@ class PortableFreeBody:
         If a moment is not positive, or if the quaternion is zero.
     """
 
-    @mp.workdps(DIGITS)  # type: ignore[untyped-decorator]
+    @digits(DIGITS)
     def __init__(
         self, inertia: list[float], omega: list[float], quaternion: list[float], exact: list[float] | None,
         axes: list[float] | None,

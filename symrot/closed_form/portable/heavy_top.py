@@ -14,7 +14,6 @@ for ``m = 1``, the motion that tends to the upright position, with hyperbolic fu
 from typing import Any
 
 import numpy as np
-from mpmath import mp, mpc, mpf
 
 from symrot.closed_form.build import Floats
 from symrot.closed_form.portable.phases import (
@@ -29,9 +28,12 @@ from symrot.closed_form.portable.phases import (
     vector,
 )
 from symrot.closed_form.portable.quaternions import Axes, mapping, unit
+from symrot.formula.precision import digits, mp
 from symrot.kinematics.hamilton import conjugate, hamilton
 
 __all__ = ["PortableHeavyTop"]
+
+mpc, mpf = mp.mpc, mp.mpf
 
 DIGITS = 160  # digits of the constants
 EQUAL = mpf(10) ** -70  # closer roots, relative to their size, count as equal: equal roots are found to about 80 digits
@@ -47,7 +49,7 @@ class PortableHeavyTop:
     number. ValueError is raised if the moment about a transverse axis is not positive, or if the quaternion is zero.
     """
 
-    @mp.workdps(DIGITS)  # type: ignore[untyped-decorator]
+    @digits(DIGITS)
     def __init__(
         self, moments: list[float], pull: list[float], omega: list[float], quaternion: list[float],
         space: list[float], axes: list[float] | None,
