@@ -1,4 +1,4 @@
-"""Derivatives of a motion with respect to initial values and constants, at the sample times, with labels."""
+"""Derivatives of a motion by initial values and constants, at the sample times, with labels."""
 
 from collections.abc import Iterator, Mapping, Sequence
 from dataclasses import dataclass, replace
@@ -26,9 +26,7 @@ TIME = "t"
 
 
 class Sensitivity(NamedTuple):
-    """Derivatives of a motion at n samples with respect to one variable, or to the k components of a vector.
-
-    For a vector, its components are the last axis of the arrays.
+    """Derivatives at n samples by one variable, or by a vector; its k components are then the last axis of the arrays.
 
     Attributes
     ----------
@@ -62,7 +60,7 @@ class SwitchSlopes(NamedTuple):
     function, how : str
         The function, and how it switches, as in ``stats.switchings`` of a trajectory.
     slopes : array, shape (m,)
-        The derivatives of the time with respect to the m variables, s per unit of each variable; NaN where they do not
+        The derivatives of the time with respect to the m variables, s per unit of variable; NaN where they do not
         exist.
 
     Examples
@@ -81,7 +79,7 @@ class SwitchSlopes(NamedTuple):
 
 @dataclass(frozen=True, eq=False)
 class Sensitivities(Mapping[str, Sensitivity]):
-    """Derivatives of a motion at n samples with respect to m variables: a mapping from requested names to derivatives.
+    """Derivatives of a motion at n samples, by m variables: a mapping from the requested names to derivatives.
 
     Attributes
     ----------
@@ -186,10 +184,7 @@ class Sensitivities(Mapping[str, Sensitivity]):
 
 
 def event_time_items(variables: Sequence[str], units: Sequence[str], slopes: Floats) -> list[Labelled]:
-    """Return the derivatives of k event times with respect to m variables, with labels such as ``t_by_weight``.
-
-    ``slopes`` has the derivatives, shape (k, m).
-    """
+    """Return the derivatives of k event times with respect to m variables, with labels such as ``t_by_weight``."""
     items = []
     for number, (variable, unit) in enumerate(zip(variables, units, strict=True)):
         name = f"{TIME}{BY}{variable}"
@@ -235,7 +230,7 @@ def restored(record: Mapping[str, Any], items: Mapping[str, Labelled]) -> Sensit
 
 
 def time_slopes(rows: Sequence[Sequence[float | None]], variables: int | None) -> Floats:
-    """Return the derivatives of k times with respect to m variables, shape (k, m), from ``rows`` in a file.
+    """Return the derivatives of k times with respect to m variables as an array, shape (k, m), from ``rows`` in a file.
 
     None in the file is NaN in the result. ``variables`` is m; if it is None, k must be at least 1.
     """
