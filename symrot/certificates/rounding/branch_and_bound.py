@@ -340,7 +340,7 @@ def _result(run: _BoundSearch, parts: _Parts, settled: float) -> SearchResult:
     """Return the result of a search that ends with ``parts``, the sub-boxes whose bounds splitting may still lower.
 
     ``settled`` is the largest bound of the finished sub-boxes, which are not in ``parts``. They were not split again,
-    because their bounds were close to the error at a sampled point.
+    because their bounds were close to the error at a sampled point, or at most the target of the search.
     """
     bound = max(settled, float(parts.bound.max(initial=-1.0)), 0.0)
     pointwise, worst, obstacle = max(run.pointwise, 0.0), run.worst, -1
