@@ -46,7 +46,7 @@ static inline void symrot_driven(double t, const double *y, const double *p, dou
 {
     symrot_torque function;
     void *user;
-    double torque[3] = {0.0, 0.0, 0.0};
+    double torque[3] = {NAN, NAN, NAN}; /* for a function that writes nothing, such as one interrupted at its start */
     memcpy(&function, p + SYMROT_FUNCTION, sizeof function);
     memcpy(&user, p + SYMROT_USER, sizeof user);
     symrot_rates(t, y, p, dy);
