@@ -22,7 +22,7 @@ Parameters = tuple[tuple[str, Node], ...]  # name in the kernel, formula over th
 
 
 class Conserved(NamedTuple):
-    """A candidate for a conserved quantity, with the decision whether it is conserved.
+    """A candidate for a conserved quantity, with the decision of whether it is conserved.
 
     Attributes
     ----------

@@ -36,7 +36,7 @@ def vector(pairs: list[float]) -> list[Any]:
 
 
 def power_of_two(value: Any) -> Any:
-    """Return the smallest power of two above a positive number, or 1 for zero: 5 gives 8."""
+    """Return the smallest power of two greater than a positive number, or 1 for zero: 5 gives 8, and 8 gives 16."""
     return mpf(2) ** int(mp.frexp(value)[1]) if value else mpf(1)
 
 
