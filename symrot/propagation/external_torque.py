@@ -103,6 +103,7 @@ class _Function(TorqueSource):
 
     def __init__(self, function: Callable[[float, Floats, Floats], ArrayLike]) -> None:
         self.function = function
+        self.user = np.zeros(1)  # not null: if ctypes drops an exception, C finds a torque that is not a number
         self._errors = local()  # of this thread: another one may follow a motion with the same function
         self.pointer = CALLBACK(self._call)
 
@@ -122,7 +123,7 @@ class _Function(TorqueSource):
         return _Function(copy.deepcopy(self.function, memo))
 
     def _call(self, t: float, omega: Any, quaternion: Any, torque: Any, user: Any) -> int:
-        # outside of the try block, ctypes would drop an interrupt; C then finds a torque that is not a number
+        # outside of the try block, ctypes would drop an interrupt
         try:
             if self.failure() is not None:
                 return 1
