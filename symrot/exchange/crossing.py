@@ -21,10 +21,13 @@ MOST_TESTS = 50_000_000
 """Largest number of tests of a triangle against a line; it limits the number of lines."""
 
 MOST_PAIRS = 5_000_000
-"""Largest number of pairs of triangles, overlapping along one axis, that are searched for crossings."""
+"""Largest number of pairs of triangles that are searched for crossings; if there are more, none is searched.
+
+The triangles of a pair overlap along one coordinate axis.
+"""
 
 MOST_SEARCHED = 200_000
-"""Largest number of triangles of a mesh in which all pairs of crossing triangles are searched."""
+"""Largest number of triangles of a mesh whose pairs of triangles are searched for crossings; larger meshes are not."""
 
 MOST_ANGLES = 5_000_000
 """Largest number of solid angles that are computed, one for each triangle and test point.
