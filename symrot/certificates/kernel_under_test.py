@@ -91,7 +91,7 @@ def _expression(node: Node) -> Expr:
 
 
 def _derivative_laws(equations: Equations, outputs: Sequence[str]) -> tuple[Law, ...]:
-    """Return a tuple with one law: each output such as ``domega_1_by_A`` is the derivative of ``domega_1`` by ``A``.
+    """Return a tuple with one law: each output such as ``domega_1_by_A`` is the derivative d(domega_1)/dA of its rate.
 
     The tuple is empty if no output is a derivative.
     """

@@ -125,10 +125,11 @@ def trusted(method: str, has_bounds: bool, elliptic: bool = False) -> Data:
 
 
 def step_section(method: Method) -> Data:
-    """Return the name of a step's method with its options: its order, and the inputs by which it is differentiated.
+    """Return the name of a step's method with its options, as a certificate has them.
 
-    For an exact step by steady rotations, the option is the body's symmetry axis, 1, 2 or 3, or None if omega is
-    constant.
+    The options are the order and, for a step with derivatives, ``jacobian``: the inputs with respect to which the step
+    is differentiated. For an exact step by steady rotations, the option is the body's symmetry axis, 1, 2 or 3, or None
+    if omega is constant.
     """
     if isinstance(method, SteadyRotations):
         return {"method": method.name, "axis": None if method.axis is None else method.axis + 1}

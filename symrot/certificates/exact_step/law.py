@@ -36,7 +36,7 @@ _State = tuple[list[Decimal], Decimal]
 
 
 class _Slope:
-    """A number that depends on dt, with its derivative by dt."""
+    """A number that depends on dt, with its derivative with respect to dt."""
 
     __slots__ = ("slope", "value")
 
@@ -112,9 +112,9 @@ def _number(value: Fraction) -> Decimal:
 
 
 def _rint(x: Any) -> Decimal:
-    """Return the whole number nearest to ``x``, a Decimal or a _Slope (a value with its derivative by the step size).
+    """Return the whole number nearest to ``x``, a Decimal or a _Slope.
 
-    The result is a Decimal, since its derivative is zero.
+    The result is a Decimal, since its derivative with respect to dt is zero.
     """
     return _slope(x).value.to_integral_value(ROUND_HALF_EVEN)
 
@@ -206,9 +206,9 @@ def law_section(
     """Check at some states that a C function computes the motion; return the section that the step's certificate has.
 
     The motion is the solution of the rates' differential equations: a step of size 0 must change nothing, and the
-    derivative by dt of the state after a step must be the rates there. The section is a dict: ``law`` (these two
-    equations in words), ``states`` (their number), ``digits``, ``largest_violation`` (relative, as text). The
-    results of 16 calls are kept.
+    derivative of the state after a step with respect to dt must be the rates there. The section is a dict: ``law``
+    (these two equations in words), ``states`` (their number), ``digits``, ``largest_violation`` (relative, as text).
+    The results of 16 calls are kept.
 
     Parameters
     ----------

@@ -54,9 +54,9 @@ def require_limits(file: str, operations: Operations) -> None:
 def motion_section(file: str, rates: Program, places: Mapping[str, str], operations: Operations) -> dict[str, Any]:
     """Check that a C function computes the solution of the rates' equations; return the section ``motion``.
 
-    The section of the certificate is a dict: ``law`` (for dt = 0 the step changes nothing, and its derivative by dt is
-    the rates at its result), ``points`` (the number of random points of the check), and
-    ``wrong_with_probability_below``: a bound of the probability that a C function which violates the law passes.
+    The section of the certificate is a dict: ``law`` (for dt = 0 the step changes nothing, and the derivative of the
+    new state with respect to dt is the rates at the new state), ``points`` (the number of random points of the check),
+    and ``wrong_with_probability_below``: a bound of the probability that a C function which violates the law passes.
 
     Parameters
     ----------
@@ -121,7 +121,7 @@ def _compared(
 
 
 def _step(operations: Operations, places: Mapping[str, str], values: Mapping[str, Residue]) -> list[Dual]:
-    """Return the components of the state after a step from one point, each with its derivative by dt."""
+    """Return the components of the state after a step from one point, each with its derivative with respect to dt."""
     number = exact(operations.precision)
     inputs = {
         place: Dual(values[symbol], {SIZE: Residue(1)} if symbol == SIZE else {}) for place, symbol in places.items()
