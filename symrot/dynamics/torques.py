@@ -239,7 +239,7 @@ def field_value(name: str, pattern: FieldPattern) -> Any:
 def torque_of_potential(law: TorqueLaw) -> Matrix:
     """Return the torque, body components, that a law's potential exerts.
 
-    Component i is minus the derivative of the potential with respect to a small rotation about body axis i.
+    It is minus the derivatives of the potential with respect to small rotations about the body axes.
     """
     # compared with the law's own formula, to prove that both agree
     rates = quaternion_rates("body") * Matrix(symbols.omega_b)
