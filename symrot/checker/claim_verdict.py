@@ -136,13 +136,16 @@ def within_budget(decide: Callable[[], Verdict], text: str) -> Verdict:
 
 
 def is_unfinished(verdict: Verdict) -> bool:
-    """Return whether the budget for a claim ended before it was decided, or before all repairs were tried."""
+    """Return whether the budget for a claim was used up before a decision, or before all repairs were tried."""
     limits: tuple[Limit, ...] = OutOfOperations(), TimeUp()
     return any(verdict.reason == unfinished(limit).reason or ended_note(limit) in verdict.notes for limit in limits)
 
 
 def ended_note(limit: Limit) -> str:
-    """Return the note that the budget for a claim ended before all other readings and repairs were tried."""
+    """Return the note that the budget for a claim was used up before all other readings and repairs were tried.
+
+    The budget is a number of operations and a processor time; ``limit`` says which of them was reached.
+    """
     if isinstance(limit, OutOfOperations):
         return f"the search for other readings and for repairs was stopped after {_operations()}"
     return (
@@ -252,7 +255,10 @@ def _was_near_relation(claim: Claim) -> bool:
 
 
 def _near_relation(claim: Claim, verdict: Verdict) -> Verdict:
-    """Return ``verdict``, on a false claim, with repairs that turn the claim into a known relation, if any."""
+    """Return ``verdict`` with repairs that turn a false claim into a known relation, and with their diagnosis.
+
+    If there is no such repair, return ``verdict`` unchanged.
+    """
     from symrot.checker.recognition.naming.near_verdicts import verdict_near_relation
 
     nearest = verdict_near_relation(claim)

@@ -170,9 +170,9 @@ def _with_operand(source: str) -> str:
 def _without_direction(source: str, still: str, moving: str) -> tuple[str, list[_Rate], int]:
     """Return (text, rates, direction), where the text has ω in place of one ``{}^N ω^B`` or ``ω_{B/N}``.
 
-    ``rates`` are the time derivatives in this text. The direction is 1 if the frames at ω say that it is the angular
-    velocity of ``moving`` relative to ``still``, and -1 for ``still`` relative to ``moving``. If no ω names these two
-    frames, the text is unchanged and the direction 0.
+    ``rates`` are the time derivatives in this text. The direction is 1 if the indices of ω state the angular velocity
+    of the frame ``moving`` relative to the frame ``still``, and -1 if they state the reverse. If no ω has these two
+    indices, the text is unchanged and the direction is 0.
     """
     for pattern in DIRECTIONS:
         for match in pattern.finditer(source):
@@ -186,8 +186,8 @@ def _without_direction(source: str, still: str, moving: str) -> tuple[str, list[
 def without_marks(source: str) -> tuple[str, str]:
     """Return (text, note): a text with ``dA/dt`` in place of ``(dA/dt)_s``, and a note for the user on the frame s.
 
-    The marks such as s are left out if all derivatives with a usual name of a frame (one in INERTIAL or ROTATING) have
-    the same mark. Otherwise return the text unchanged and the note "".
+    A mark such as s is left out if it is a usual name of a frame (in INERTIAL or ROTATING) and the text has no other
+    mark of this kind. Otherwise return the text unchanged and the note "".
     """
     marked = [rate for rate in _rates_in(source) if rate.frame in {*INERTIAL, *ROTATING} - {""}]
     if not marked or len({rate.frame for rate in marked}) != 1:

@@ -118,8 +118,11 @@ def _on_least_spin(claim: Claim, sign: str) -> Verdict | None:
 
 
 def _is_condition(claim: Claim) -> bool:
-    """Return whether an inequality only restricts values, as ``omega > 2`` and ``x > y`` do, but not ``x^2 > x`` or
-    ``x^2 > 1``.
+    """Return whether an inequality is meant as a condition on its letters, such as ``omega > 2``, not as a theorem.
+
+    If both sides have letters, it is a condition if they have none in common: ``x > y``, but not ``x^2 > x``. If only
+    one side has letters, it is a condition if this side is a single letter or has several letters: ``omega > 2``, but
+    not ``x^2 > 1``. A claim with hypotheses is never a condition.
     """
     assert claim.relation is not None
     if claim.hypotheses:

@@ -98,10 +98,10 @@ def check(
     -------
     Verdict
         ``.verdict`` is ``"true"``, ``"false"``, ``"conditional"`` (true if a condition in ``.requires`` holds) or
-        ``"undecided"``. A claim that only names a formula, such as ``"I = m r^2/2"``, may be ``"recognised"`` (symrot
-        knows the formula), ``"doubtful"`` (one edit makes it a formula that symrot knows) or a ``"definition"`` (symrot
-        does not judge it). A text that holds for some values only, such as ``"x^2 = 4"`` or ``"omega > 2"``, is a
-        ``"definition"`` too. ``.dimension`` says whether the units fit.
+        ``"undecided"``. A claim that gives a formula for a quantity without defining it, such as ``"I = m r^2/2"``, may
+        be ``"recognised"`` (symrot knows the formula), ``"doubtful"`` (one edit makes it a formula that symrot knows)
+        or a ``"definition"`` (symrot does not judge it). A text that holds for some values only, such as ``"x^2 = 4"``
+        or ``"omega > 2"``, is a ``"definition"`` too. ``.dimension`` says whether the units fit.
 
     Raises
     ------

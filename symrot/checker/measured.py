@@ -28,7 +28,7 @@ DECIMAL, ROUNDED_WHOLE = r"\d+\.\d+(?:[eE][+-]?\d+)?", r"[1-9]\d*[1-9]"
 LONG_WHOLE = 3
 """The smallest number of digits of a whole number that may be a rounded rational value, as in 1 hp = 746 W."""
 
-TURN = 7
+LEAST_DEGREES = 7
 """A number of at least this size, such as 30 in ``sin(30)``, is probably an angle in degrees: 2 pi is 6.28."""
 
 TYPED_ANGLE = re.compile(
@@ -125,8 +125,8 @@ def _rounded(claim: Claim, sides: list[Node], factors: dict[str, Node], measured
         is_long = len(digits) >= LONG_WHOLE
         if not is_decimal and not is_percentage and not is_long and not _is_irrational(claim, value):
             continue
-        worked = replace(claim, relation=None, value=value, printed=digits, hypotheses=())
-        verdicts.append(_to_digits(worked, measured, measured.units[unit].text, is_right=side is sides[1]))
+        value_claim = replace(claim, relation=None, value=value, printed=digits, hypotheses=())
+        verdicts.append(_to_digits(value_claim, measured, measured.units[unit].text, is_right=side is sides[1]))
     words = ["undecided" if verdict is None else verdict.verdict for verdict in verdicts]
     return next((verdicts[words.index(word)] for word in ("true", "undecided", "false") if word in words), None)
 
@@ -137,19 +137,20 @@ def _is_irrational(claim: Claim, value: Node) -> bool:
     return bool(getattr(number_of_unit, "is_number", False)) and not number_of_unit.is_Rational
 
 
-def _to_digits(worked: Claim, measured: Measured, unit: str, is_right: bool) -> Verdict | None:
-    """Return the verdict on whether the value of the claim ``worked`` rounds to the digits that the claim states.
+def _to_digits(value_claim: Claim, measured: Measured, unit: str, is_right: bool) -> Verdict | None:
+    """Return the verdict on whether a value rounds to the number that a text states for it; None if undecided.
 
-    ``unit`` is the unit after these digits, ``is_right`` tells whether they are on the right-hand side of the equation
-    ``measured``. A false claim gets a repair if the correct digits can be computed. Return None if undecided.
+    ``value_claim`` has the value of one side of the equation, in the unit of the number, and the digits of the number.
+    ``measured`` is the typed equation. In it, ``unit`` is the unit after the number, and ``is_right`` says whether the
+    number is on the right side. The verdict "false" has a repair if the correct digits can be computed.
     """
-    digits = worked.printed
-    decision = decide_value(worked)
+    digits = value_claim.printed
+    decision = decide_value(value_claim)
     if decision.verdict == "true":
         return Verdict("true", notes=(f"to the digits given: the value rounds to {digits} {unit}",))
     if decision.verdict != "false":
         return None
-    right = rounded_value(worked)
+    right = rounded_value(value_claim)
     if not right:
         return Verdict("false", counterexample=decision.counterexample)
     sentence = f"a number is wrong: the value rounds to {right} {unit}, not to {digits}"
@@ -215,11 +216,12 @@ def in_degrees(claim: Claim, verdict: Verdict, decide: Callable[[Claim], Verdict
 def _with_degree_signs(source: str, count: int) -> tuple[Repair, ...]:
     """Return (repair,): the text ``source`` with a degree sign after each angle that is probably in degrees.
 
-    Such an angle is a number of at least TURN at the start of the argument of a trigonometric function. ``count`` is
-    the number of such angles in the claim that was read from the text. Return () if as many are not found in the text.
+    Such an angle is a number of at least LEAST_DEGREES at the start of the argument of a trigonometric function.
+    ``count`` is the number of such angles in the claim that was read from the text. Return () if the text has more or
+    fewer.
     """
     degree = "^\\circ" if "\\" in source else "°"
-    ends = [match.end() for match in TYPED_ANGLE.finditer(source) if float(match["number"]) >= TURN]
+    ends = [match.end() for match in TYPED_ANGLE.finditer(source) if float(match["number"]) >= LEAST_DEGREES]
     if len(ends) != count:
         return ()
     parts = [source[start:end] for start, end in pairwise((0, *ends, len(source)))]
@@ -227,15 +229,15 @@ def _with_degree_signs(source: str, count: int) -> tuple[Repair, ...]:
 
 
 def _is_large_angle(node: Node) -> bool:
-    """Return whether a tree is a trigonometric function of a number of at least TURN, such as ``sin(30)``."""
+    """Return whether a tree is a trigonometric function of a number of at least LEAST_DEGREES, such as ``sin(30)``."""
     is_function = node.kind == "call" and node.value in TRIGONOMETRIC
-    return is_function and node.args[0].kind == "number" and node.args[0].value >= TURN
+    return is_function and node.args[0].kind == "number" and node.args[0].value >= LEAST_DEGREES
 
 
 def _degrees(tree: Node) -> Node:
     """Return a tree with ``sin(30*pi/180)`` for ``sin(30)``.
 
-    A number of at least TURN as the argument of a trigonometric function is taken as an angle in degrees.
+    A number of at least LEAST_DEGREES as the argument of a trigonometric function is taken as an angle in degrees.
     """
     args = tuple(map(_degrees, tree.args))
     if _is_large_angle(tree):

@@ -111,8 +111,9 @@ def _may_have_others(claim: Claim, letter: Node) -> bool:
 def _roots(difference: Expr, symbol: Symbol, name: str) -> str | None:
     """Return all real zeros of ``difference`` as text, ``"x == -2 and x == 2"``, or only how many there are.
 
-    Return None if there are none, or if ``difference`` is not a polynomial in ``symbol`` of a degree from 1 to
-    HIGHEST_DEGREE, or to 2 if its coefficients are irrational numbers. ``name`` is the name of ``symbol``.
+    ``name`` is the name of ``symbol``. Return None if there are no real zeros, and if ``difference`` is not a
+    polynomial in ``symbol``, or one of too high a degree: above HIGHEST_DEGREE for rational coefficients, above 2 for
+    others.
     """
     try:
         polynomial = Poly(difference, symbol, domain="QQ")

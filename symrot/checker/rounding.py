@@ -14,13 +14,13 @@ from symrot.exact.intervals import enclosure
 __all__ = ["rounded_value", "with_rounding"]
 
 LONG_WHOLE = re.compile(r"[1-9]\d+[1-9]")
-"""Pattern of an integer that may be a rounded number, such as 157: three digits or more, neither 0 first nor last."""
+"""Pattern of an integer that may be a rounded number, such as 157: three digits or more, the first and last not 0."""
 
 
 def with_rounding(claim: Claim, verdict: Verdict) -> Verdict:
     """Return the verdict "true" for a claim such as ``2/3 == 0.667``, whose decimal number is correctly rounded.
 
-    A number with two dots after it, ``0.66..``, may also be cut off.
+    A number with two dots after it, ``0.66..``, may also be truncated.
 
     For a wrong digit, return ``verdict`` with the diagnosis "digits" and the corrected claim as its repair, or the
     verdict "false" if the right digits cannot be written. Return ``verdict`` for any other claim.
@@ -83,10 +83,10 @@ def _scientific(tree: Node) -> tuple[Node, int]:
 
 
 def _long_whole(node: Node, source: str, value: Node) -> str:
-    """Return the digits of ``node``, as typed in ``source``, if it is an integer that may round ``value``; otherwise
-    "".
+    """Return the digits of the integer ``node``, as typed in ``source``, if the integer may be ``value`` rounded.
 
-    157 may round ``1500*2*pi/60``.
+    For instance, 157 may be ``1500*2*pi/60`` rounded. The value must contain pi, a function call such as a root, or a
+    decimal number. Otherwise, and for nodes other than long integers, return "".
     """
     sign, inner = ("-", node.args[0]) if node.kind == "neg" else ("", node)
     digits = source[inner.span[0] : inner.span[1]]
@@ -102,26 +102,26 @@ def _is_constant(node: Node) -> bool:
     return all(part.value == "pi" for _, part in walk(node) if part.kind == "name")
 
 
-def _begins_with(worked: Claim) -> bool:
-    """Return whether the value of ``worked`` begins with the digits printed for it, as 2/3 does with ``0.66..``."""
-    assert worked.value is not None
-    places = len(worked.printed.partition(".")[2])
+def _begins_with(value_claim: Claim) -> bool:
+    """Return whether the value in a claim begins with the digits printed for it, as 2/3 does with ``0.66..``."""
+    assert value_claim.value is not None
+    places = len(value_claim.printed.partition(".")[2])
     half = number(Fraction(5, 10 ** (places + 1)))
-    middle = sum_of([worked.value, half if worked.printed.startswith("-") else negated(half)])
-    return "e" not in worked.printed and decide_value(replace(worked, value=middle)).verdict == "true"
+    middle = sum_of([value_claim.value, half if value_claim.printed.startswith("-") else negated(half)])
+    return "e" not in value_claim.printed and decide_value(replace(value_claim, value=middle)).verdict == "true"
 
 
 def _rounded(claim: Claim, verdict: Verdict, value: Node, digits: str, side: Node) -> Verdict:
-    worked = replace(claim, relation=None, value=value, printed=digits)
-    decision = decide_value(worked)
+    value_claim = replace(claim, relation=None, value=value, printed=digits)
+    decision = decide_value(value_claim)
     source = claim.sources["claim"]
-    if source.startswith("..", side.span[1]) and _begins_with(worked):
+    if source.startswith("..", side.span[1]) and _begins_with(value_claim):
         note = f"to the digits given: the value begins with {digits}"
         return Verdict("true", dimension=verdict.dimension, notes=(*verdict.notes, note), seconds=verdict.seconds)
     if decision.verdict == "true":
         note = f"to the digits given: the value rounds to {digits}"
         return Verdict("true", dimension=verdict.dimension, notes=(*verdict.notes, note), seconds=verdict.seconds)
-    right = rounded_value(worked)
+    right = rounded_value(value_claim)
     if "." not in right and not LONG_WHOLE.fullmatch(right.removeprefix("-")):
         right = ""  # a short integer is an exact number
     if not right and decision.verdict == "false":  # the right digits cannot be written in its place

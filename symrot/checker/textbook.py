@@ -1,7 +1,7 @@
-"""Verdicts on the claims of a document, with allowance for characters that the extraction of its text lost.
+"""Verdicts on the claims of a printed document, with allowance for characters that were lost in extracting its text.
 
-The left side of a claim is the printed formula, the right side the formula that it should equal. If a claim is true
-only after lost characters, such as minus signs, are put back on the left, the document may have no error.
+The left side of a claim is the printed formula, the right side is the formula that it should equal. If a claim becomes
+true only by adding lost characters, such as minus signs, on the left, the document may have no error.
 """
 
 from collections import Counter
@@ -48,7 +48,7 @@ class Finding:
         The data of the claim.
     verdict : Verdict
     outcome : str
-        A key of ``OUTCOMES``.
+        A key of ``OUTCOMES``, such as ``"holds"``, ``"conditional"`` or ``"fails"``.
     reading : str
         Another reading of the printed text that is true; otherwise empty.
     right : str
@@ -56,12 +56,13 @@ class Finding:
     parts, corrected : mapping of str to Node
         The trees of the claim, and the corrected trees: ``{"left": tree, "R": tree}`` for a side and a definition.
     origin : str
-        What the corrected formula comes from: the ``"search"`` for repairs, a ``"derivation"`` from the reference, or
-        the ``"proposal"`` of a person.
+        The source of the corrected formula: ``"search"`` if the search for repairs found it, ``"derivation"`` if it is
+        computed from the rest of the claim, ``"proposal"`` if a person wrote it in the errata.
     conditions : tuple of str
-        Conditions that the document does not state, and that quantities with their usual signs may violate. If the
-        verdict is "conditional", each of them alone makes the formula true. Otherwise the formula needs all of them:
-        a formula with the verdict "true" is undefined where one fails.
+        Conditions of the formula that the document does not state, such as ``sin(theta) != 0``. If the verdict is
+        "conditional", any one of the conditions makes the formula true. Otherwise the formula needs all of them. A
+        formula with the verdict "true" is undefined where one of them fails; conditions that hold for all quantities
+        with their usual signs, such as ``m != 0`` for a mass, are then left out.
     words : str
         Words for the conditions from the document's file; empty if it has none.
     """
@@ -165,12 +166,17 @@ def _prove(claim: Claim, condition: Condition) -> None:
 
 
 def _correction(claim: Claim, verdict: Verdict, formula: PrintedFormula | None) -> tuple[str, dict[str, Node]]:
-    """Return "search", "derivation" or "proposal", the origin of a correction, and the corrected trees: {"left": tree}.
+    """Return the origin of a claim's correction and the corrected trees: ("search", {"left": tree}).
+
+    The origin is "proposal" if the errata contain the corrected formula, and "derivation" if the errata name a part to
+    be computed from the rest of the claim. Otherwise it is "search": the correction is the nearest repair that the
+    check of the claim found. If it found none, the dictionary is empty.
 
     Raises
     ------
     InputError
-        For a part that may not be corrected, and for a correction that the exact engine does not prove.
+        If a corrected part is not in ``claim.editable``, which by default has just the left side, and if the exact
+        engine does not prove the claim with the correction.
     """
     origin = "search"  # the nearest repair, unless the errata propose a correction or ask to derive it
     changes: Mapping[str, str] = verdict.repairs[0].edited if verdict.repairs else {}
@@ -237,7 +243,7 @@ is lost with the bars.
 
 
 def _is_reading(claim: Claim, other: tuple[str, Node, Node], lost: Collection[str]) -> bool:
-    """Return whether a relation differs from a claim only on the left side, by characters that extraction lost.
+    """Return whether a relation differs from a claim only by lost characters on the left side.
 
     ``other`` is the relation as (sign, left side, right side); ``lost`` are kinds of characters, keys of ``LOSSES``.
     """
@@ -266,7 +272,7 @@ def differs_by_lost_characters(printed: Node, right: Node, lost: Collection[str]
 
 
 def _extracted(node: Node, lost: Collection[str]) -> Node:
-    """Return the formula that is left if the extraction of a text loses characters of the kinds ``lost``.
+    """Return a formula without the characters of the kinds ``lost``, as if extracting the document's text lost them.
 
     For "minus signs", ``a - b``, the sum of a and -b, becomes ``a + b``. The kinds are keys of ``LOSSES``; "token
     order" and unknown kinds change nothing here.

@@ -177,11 +177,12 @@ class Verdict:
     Attributes
     ----------
     verdict : str
-        ``"true"``, ``"false"``, ``"conditional"`` (true under ``requires``) or ``"undecided"``. For a claim that only
-        names a formula, ``I_zz == m/12*(a**2 + b**2)``: ``"recognised"``, ``"doubtful"`` (a single edit makes it a
-        formula that symrot derives) or ``"definition"`` (neither: symrot does not judge it). An equation or inequality
-        that restricts its letters, such as ``x^2 = 4``, is a ``"definition"`` too. A claim of a file that cannot be
-        read or has no meaning is ``"refused"``.
+        ``"true"``, ``"false"``, ``"conditional"`` (true under ``requires``) or ``"undecided"``. For a claim that gives
+        a formula for a quantity without defining it, such as ``I_zz == m/12*(a**2 + b**2)``: ``"recognised"`` (symrot
+        derives this formula), ``"doubtful"`` (a single edit makes it a formula that symrot derives) or
+        ``"definition"`` (neither: symrot does not judge it). An equation or inequality that restricts its letters, such
+        as ``x^2 = 4``, is a ``"definition"`` too. A claim of a file that cannot be read or has no meaning is
+        ``"refused"``.
     conditions : tuple of str
         Conditions under which both sides are defined, such as ``"sin(theta) != 0"``; for a conditional claim, its
         requirements come first.
@@ -193,7 +194,7 @@ class Verdict:
     repairs : tuple of Repair
         At most three, nearest first.
     recognised_as : tuple of Identification
-        The formulas of symrot to which the named formula, or its repair, is proven equal, the likeliest first; for a
+        The formulas of symrot to which the claim's formula, or its repair, is proven equal, the likeliest first; for a
         claim that is false by its context, the formula that is meant.
     reason : str
         The reason why a claim is undecided, refused, or only a definition; usually empty for other verdicts.

@@ -269,7 +269,11 @@ def _bends(spline: Any) -> list[float]:
 
 
 def _torque_source(torque: Any, switching: Sequence[float]) -> TorqueSource:
-    """Return a torque, in any form that :func:`symrot.propagator` accepts, as a :class:`TorqueSource`."""
+    """Return a torque, in any form that :func:`symrot.propagator` accepts, as a :class:`TorqueSource`.
+
+    ``switching`` has the times, s, at which the torque may jump. A table is interpolated separately between these
+    times.
+    """
     if isinstance(torque, ctypes._CFuncPtr):  # type: ignore[attr-defined]
         return _CFunction(torque)
     if callable(torque):

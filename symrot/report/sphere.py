@@ -207,9 +207,12 @@ def _path(
 
 
 def _gaps(directions: Floats, extent: float = 1.0) -> NDArray[np.bool_]:
-    """Return a mask of a path's directions: True if the next direction is too far away to be joined by a line."""
+    """Return a mask of a path's directions: True if the next direction is too far away to be joined by a line.
+
+    Too far is farther than LONGEST times ``extent``, the size of the path, rad.
+    """
     steps = np.linalg.norm(np.diff(directions, axis=0), axis=1)
-    # relative to the size of the path, rad; the last direction has no next one
+    # the last direction has no next one
     return np.append(steps > LONGEST * extent, False)
 
 

@@ -60,7 +60,8 @@ class SwitchSlopes(NamedTuple):
     function, how : str
         The function, and how it switches, as in ``stats.switchings`` of a trajectory.
     slopes : array, shape (m,)
-        The derivatives of the time by the m variables, s per unit of each variable; NaN where they do not exist.
+        The derivatives of the time with respect to the m variables, s per unit of variable; NaN where they do not
+        exist.
 
     Examples
     --------
@@ -183,7 +184,7 @@ class Sensitivities(Mapping[str, Sensitivity]):
 
 
 def event_time_items(variables: Sequence[str], units: Sequence[str], slopes: Floats) -> list[Labelled]:
-    """Return the derivatives of k event times by m variables, shape (k, m), with labels such as ``t_by_weight``."""
+    """Return the derivatives of k event times with respect to m variables, with labels such as ``t_by_weight``."""
     items = []
     for number, (variable, unit) in enumerate(zip(variables, units, strict=True)):
         name = f"{TIME}{BY}{variable}"
@@ -229,7 +230,7 @@ def restored(record: Mapping[str, Any], items: Mapping[str, Labelled]) -> Sensit
 
 
 def time_slopes(rows: Sequence[Sequence[float | None]], variables: int | None) -> Floats:
-    """Return the derivatives of k points in time by m variables as an array, shape (k, m), from ``rows`` in a file.
+    """Return the derivatives of k times with respect to m variables as an array, shape (k, m), from ``rows`` in a file.
 
     None in the file is NaN in the result. ``variables`` is m; if it is None, k must be at least 1.
     """

@@ -14,6 +14,9 @@ from sympy import Matrix
 import symrot
 from symrot.dynamics.equations import hurwitz_determinants
 from symrot.errors import PropagationError
+from symrot.planning.plan import make_plan
+from symrot.propagation.method import choose_method
+from symrot.propagation.switched.motion import SwitchedMotion
 from tests.needs import needs_compiler
 
 pytestmark = [needs_compiler, pytest.mark.usefixtures("quick_compiler")]
@@ -196,3 +199,18 @@ def test_hurwitz_determinants_tell_whether_all_eigenvalues_are_left():
                 assert left == (last < 0), entries
                 verdicts.add((size, left))
     assert len(verdicts) == 8
+
+
+@pytest.mark.parametrize(("start", "omega", "end"), [(0, 1, 3), (2, -1, -1)])
+def test_a_motion_that_stops_early_has_no_states_beyond_its_end(start, omega, end):
+    """omega_1 = 1/(1 - t) up to the pole at t = 1, from t = 0 forward and from t = 2 backward."""
+    made = symrot.Scene.from_dict({
+        "schema": 1, "body": {"principal": [1, 1, 1]}, "initial": {"omega": [omega, 0, 0]}, "span": {"t": [start, 3]},
+        "torque": [{"kind": "expression", "torque": ["step(omega_2 + 1)/(1 - t)**2", "0", "0"]}],
+    })  # fmt: skip
+    plan, broken = make_plan(made, switched=True), []
+    _, states = SwitchedMotion(plan, choose_method(plan, "taylor"), 1e-10).parts(end, broken)
+    assert len(broken) == 1 and abs(broken[0].t - 1.0) < 1e-3
+    near, beyond = start + (1 - start) * np.array([0.25, 0.75]), start + (1 - start) * np.array([1.5, 2.0])
+    assert np.abs(states(near)[:, 0] * (1.0 - near) - 1.0).max() < 20 * 1e-10
+    assert np.isnan(states(beyond)).all()

@@ -69,8 +69,9 @@ def imaginary_unit(trees: Sequence[Node]) -> Node | None:
 
 
 def _evident(trees: Sequence[Node], nodes: Sequence[Node], letter: str) -> Node | None:
-    """Return the node of a letter i or j that must be the imaginary unit, as i in ``|x + i*y|``; None if there is
-    none.
+    """Return the node of the name ``letter``, i or j, if it must be the imaginary unit, as in ``|x + i*y|``; else None.
+
+    ``trees`` are the formulas in which the letter may occur, and ``nodes`` are all nodes of these trees.
     """
     own = next((node for node in nodes if node == Node("name", letter)), None)
     if own is None:

@@ -156,10 +156,10 @@ def _exponent(node: Node) -> Node | None:
 
 
 def _in_exponents(sides: Sequence[Node], hats: Collection[str], known: Collection[str]) -> Iterator[str]:
-    """Yield the letters of skew matrices in exponents, which are products of such a letter and an angle.
+    """Yield the letter K of a skew matrix for each exponent that is a product of K and an angle, such as ``theta*K``.
 
-    A letter in ``hats``, the names with a hat, is yielded from any such exponent. A letter K without a hat is yielded
-    only if the equation is ``R = e^(theta K)``. The names in ``known``, which the claim defines, are never yielded.
+    ``hats`` are the names with a hat: such a K is yielded from any exponent. A letter K without a hat is yielded only
+    if the equation is ``R = e^(theta K)``. ``known`` are the names that the claim defines; they are never yielded.
     """
     for side, other in (sides, sides[::-1]):
         names_rotation = other.kind == "name" and ROTATION.fullmatch(str(other.value)) is not None

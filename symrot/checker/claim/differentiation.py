@@ -21,8 +21,11 @@ __all__ = ["as_functions", "is_rule"]
 
 
 def as_functions(claim: Claim) -> Claim | None:
-    """Return a rule of differentiation with the variable q renamed to t, and with x(t) for each function x of it:
-    ``diff(x(t), t)`` for ``diff(x, q)``. Return None for other claims.
+    """Return a claim about derivatives with t in place of its variable q, and x(t) in place of each function x of q.
+
+    ``diff(x*y, q) == x*diff(y, q) + y*diff(x, q)`` becomes the same claim about ``diff(x(t)*y(t), t)``. Return None for
+    a claim with hypotheses, with derivatives with respect to several variables, or without a function of the variable.
+    Return None also for a claim in which t has another meaning than the variable.
     """
     assert claim.relation is not None
     sign, *sides = claim.relation
@@ -35,7 +38,7 @@ def as_functions(claim: Claim) -> Claim | None:
     moving = {*names, *functions, *dict(claim.define), *(str(variable.value) for variable in variables)}
     letters = [_letters(derivative.args[0]) for derivative in derivatives]
     names |= {name for inner in letters if moving.isdisjoint(inner) for name in inner} - {"pi"}
-    # no rule of differentiation: hypotheses, several variables, or (below) both t and another variable
+    # not a rule of differentiation: hypotheses, several variables, or (below) both t and another variable
     if claim.hypotheses or len(variables) != 1 or not names:
         return None
     # the variable is renamed to t: a rule of differentiation does not depend on its name, unless t is also in the claim
@@ -58,8 +61,10 @@ def _letters(tree: Node) -> set[str]:
 def _on_letters(
     names: Collection[str], derivatives: Sequence[Node], variable: str, defined: Collection[str]
 ) -> Iterator[str]:
-    """Yield notes that tell the user which letters of a rule are functions of ``variable``, and which are
-    constants.
+    """Yield notes that tell the user which letters are functions of ``variable``, and which are constants.
+
+    The functions are ``names``. The constants are the other names in the formulas that ``derivatives`` differentiate,
+    without those that the claim defines (``defined``).
     """
     yield f"{' and '.join(sorted(names))} {'is a function' if len(names) == 1 else 'are functions'} of {variable} here"
     letters = {str(node.value) for tree in derivatives for node in nodes_of(tree.args[0]) if node.kind == "name"}
@@ -79,7 +84,7 @@ def is_rule(claim: Claim) -> bool:
     letters = [{letter for value in side for letter in value.atoms(Symbol, AppliedUndef)} for side in values]
     has_all = letters[0] <= letters[1] or letters[1] <= letters[0]
     # both sides differentiate, one of them a formula such as u*v: diff(x, t) == diff(y, t) is an equation for x
-    # diff(y, x) == y is no rule, but an equation for y
+    # diff(y, x) == y is not a rule, but an equation for y
     return has_all and all(derivatives) and any(map(_is_of_formula, [*derivatives[0], *derivatives[1]]))
 
 

@@ -1,6 +1,6 @@
 """Claims such as ``k^2 = I/m`` that give a formula for a quantity which the claim itself does not define.
 
-Such a claim is no identity: whether it holds depends on what its letters mean.
+Such a claim is not an identity: whether it holds depends on what its letters mean.
 """
 
 from collections.abc import Collection, Iterator, Sequence
@@ -89,9 +89,10 @@ def named_formula(claim: Claim) -> NamedFormula | None:
 
 
 def open_formula(claim: Claim) -> NamedFormula | None:
-    """Return an equation for an unknown function L, such as ``diff(L, q) == 0``, as a NamedFormula that is not solved.
+    """Return the NamedFormula of an equation for an unknown function L, such as ``diff(L, q) == 0``.
 
-    Return None for other claims.
+    The equation is not solved for L: the NamedFormula has the left side and the right side as they are, and ``solve``
+    is None. Return None for other claims.
     """
     assert claim.relation is not None
     _, left, right = claim.relation
@@ -109,7 +110,10 @@ def open_formula(claim: Claim) -> NamedFormula | None:
 
 
 def _is_open_rate(side: Node, other: Node) -> bool:
-    """Return whether ``side`` has a time derivative whose value only a law of motion can give, as ``(I w)' = 0``."""
+    """Return whether ``side`` has a time derivative whose value only a law of motion can give.
+
+    ``other`` is the other side of the equation. An example is ``(I w)'`` in the equation ``(I w)' = 0``.
+    """
     derivatives = (node for node in nodes_of(side) if is_derivative(node))
     has_rate = any(not is_name(node.args[0]) and {v.value for v in node.args[1:]} == {"t"} for node in derivatives)
     others = {*_letters_of([other])}
@@ -129,7 +133,7 @@ def _letters_of(trees: Sequence[Node]) -> Iterator[str]:
 
 
 def _depends_on_time(derivative: Node) -> bool:
-    """Return whether a derivative is by the time t and contains a function of time, as ``diff(x(t)**2, t)``."""
+    """Return whether a derivative is with respect to time and contains a function of time: ``diff(x(t)**2, t)``."""
     inner, *variables = derivative.args
     return any(v.value == "t" for v in variables) and any(
         node.kind == "call" and node.value != "diff" and is_name(node) for node in nodes_of(inner)
@@ -146,7 +150,7 @@ def related_formula(claim: Claim) -> NamedFormula | None:
     known = _known(claim)
     letters = [quantities_in(side) for side in (left, right)]
     generic = {name for name, tree in claim.define if is_components(name, tree)}
-    is_condition = _is_condition_on_vectors(left, right, unit=bool(claim.hypotheses))
+    is_condition = _is_condition_on_vectors(left, right, bool(claim.hypotheses))
     is_condition = is_condition or _is_condition_on_matrix(left, right, generic)
     if is_condition or _has_own_angle(left, right, generic) or _has_open_derivative(left, right, known):
         return NamedFormula(text(left), left, right, solve=None)
@@ -196,7 +200,7 @@ def related_formula(claim: Claim) -> NamedFormula | None:
 def claims_identity(claim: Claim) -> bool:
     """Return whether a claim says that both sides are equal for all values of its letters, as ``m*a == k*x`` does.
 
-    With one ``=`` the same text relates four quantities.
+    ``m*a = k*x``, with one ``=``, is not such a claim: it is a relation between four quantities.
     """
     if claim.relation is None or not claim.has_double_equals:
         return False
@@ -221,7 +225,10 @@ def claims_identity(claim: Claim) -> bool:
 
 
 def _compares_rates(left: Node, right: Node) -> bool:
-    """Return whether x and a formula with x are differentiated by t, as in ``diff(2*x, t) == diff(x, t)``."""
+    """Return whether an equation has the time derivatives of a letter and of a formula with this letter.
+
+    An example is ``diff(2*x, t) == diff(x, t)``.
+    """
     derivatives = [node for node in nodes_of(left, right) if is_derivative(node)]
     arguments = [node.args[0] for node in derivatives if all(each.value == "t" for each in node.args[1:])]
     quantities = {each.value for each in arguments if each.kind == "name"}
@@ -284,8 +291,9 @@ def _is_constraint(left: Node, right: Node, letters: Sequence[set[tuple[str, boo
 def _letters_by_definition(claim: Claim, left: Node, right: Node) -> list[set[tuple[str, bool]]]:
     """Return the sets of quantities of both sides after definitions are inserted.
 
-    For ``F == k*x`` with the definition ``F = m*a``, these are m and a, and k and x. A quantity is a pair (name,
-    whether its rate is meant). Both sets are empty if the left side is no defined name.
+    For ``F == k*x`` with the definition ``F = m*a``, the sets have m and a for the left side, k and x for the right
+    side. A quantity is a pair (name, whether its rate is meant). Both sets are empty if the left side is not a defined
+    name.
     """
     defined = {name: tree for name, tree in claim.define if not is_components(name, tree)}
     if left.value not in defined:
@@ -327,45 +335,52 @@ def _depends_on_own_letters(claim: Claim) -> bool:
     return bool(left - right) and bool(right - left)
 
 
-def _is_condition_on_vectors(left: Node, right: Node, unit: bool) -> bool:
-    """Return whether an equation sets a product of vectors or a length to a number, as ``a . b = 0`` does."""
+def _is_condition_on_vectors(left: Node, right: Node, has_hypotheses: bool) -> bool:
+    """Return whether an equation sets a product of vectors or a length to a number, as ``a . b = 0`` does.
+
+    If ``has_hypotheses``, a length does not count: a hypothesis of the claim may say that it is 1.
+    """
     for side, other in ((left, right), (right, left)):
         product_of = side.args[0] if side.kind == "call" and side.value == "sqrt" else side
         if other.kind == "number" and product_of.kind == "call" and product_of.value in ("dot", "cross"):
             first, second = product_of.args
-            # the length of a unit vector is no condition
-            return not (unit and first == second)
+            # the length of a unit vector is not a condition
+            return not (has_hypotheses and first == second)
     return False
 
 
 def _is_condition_on_matrix(left: Node, right: Node, generic: Collection[str]) -> bool:
-    """Return whether an equation is a condition on one undefined matrix, such as ``R.T*R == eye(3)`` or
-    ``det(R) == 1``.
+    """Return whether an equation is a condition on one undefined matrix: ``R.T*R == eye(3)`` or ``det(R) == 1``.
+
+    ``generic`` are the names of the vectors and matrices that the claim uses without giving their entries.
     """
     nodes = nodes_of(left, right)
     names = {str(node.value) for node in nodes if node.kind == "name"}
     kinds = {node.kind if node.kind != "call" else str(node.value) for node in nodes}
     of_product = kinds <= {"name", "number", "neg", "product", "power", "transpose", "inverse", "eye"}
     of_value = kinds <= {"name", "number", "neg", "det", "trace"}
-    # ``generic`` holds the vectors and matrices without a definition
     return len(names) == 1 and names <= {*generic} and (of_product or of_value)
 
 
 def _has_own_angle(left: Node, right: Node, generic: Collection[str]) -> bool:
-    """Return whether an equation defines the angle between two vectors, as ``a . b = |a| |b| cos(theta)`` does."""
+    """Return whether an equation defines the angle between two vectors, as ``a . b = |a| |b| cos(theta)`` does.
+
+    ``generic`` are the names of the vectors that the claim uses without giving their components.
+    """
     nodes = nodes_of(left, right)
     scalars = [node for node in nodes if node.kind == "name" and node.value not in generic and node.value != "pi"]
     angles = [
         node for node in nodes if node.kind == "call" and node.value in ("sin", "cos") and node.args[0] in scalars
     ]
     vectors = {str(node.value) for node in nodes if node.kind == "name"} & {*generic}
-    # the angle must be the only scalar; ``generic`` holds the vectors without a definition
+    # the angle must be the only scalar
     return len(scalars) == len(angles) == 1 and len(vectors) > 1
 
 
 def _has_open_derivative(left: Node, right: Node, known: Collection[str]) -> bool:
-    """Return whether an equation contains a derivative, not by time, of a name without a definition, as in
-    ``diff(L, q)``.
+    """Return whether an equation contains a derivative such as ``diff(L, q)`` of a name that is not in ``known``.
+
+    ``known`` are the names that have a meaning. Time derivatives do not count.
     """
     # its value is unknown, so the equation is no identity; time derivatives are treated elsewhere
     for side in (left, right):

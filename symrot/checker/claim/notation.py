@@ -163,5 +163,5 @@ def _is_odd_power(node: Node) -> bool:
 
 
 def _is_over_digits(node: Node) -> bool:
-    """Return whether a factor is a slash and a number of digits, such as ``/2``."""
+    """Return whether a factor is a slash and an integer, such as ``/2``."""
     return node.kind == "inv" and str(node.args[0].value).isdigit()

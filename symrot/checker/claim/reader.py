@@ -168,8 +168,11 @@ def on_constants(names: Sequence[str]) -> str:
 
 
 def _finished(node: Node, timed: Collection[str], vectors: Collection[str], parent: str = "") -> Node:
-    """Return the final tree of a typed formula: ``f(t)`` for the names ``timed``, and matrices for lists."""
-    # vectors stay without (t), and their squares become scalar products
+    """Return a parsed formula with ``f(t)`` for each name in ``timed``, and with a matrix for each list.
+
+    The names in ``vectors`` stay without (t), and their squares become scalar products. ``parent`` is the kind of the
+    node above ``node``: a list remains a list if it is, for instance, an argument of a function ("call").
+    """
     if node.kind in ("name", "call") and node.value in vectors:
         return Node("name", node.value, (), node.span)
     if node.kind == "name" and node.value in timed:
@@ -239,7 +242,12 @@ def _readings(text: _Text) -> list[Reading]:
 
 
 def _all_typed(text: _Text, one_side: bool, refusal: InputError | None) -> list[Reading]:
-    """Return the readings of a text that is not SymPy syntax; if there is none, raise ``refusal`` or another error."""
+    """Return the readings of a text that is not SymPy syntax.
+
+    ``one_side`` says that the text is a formula without a relation. ``refusal`` is the error with which the rules of
+    SymPy refused the text, or None. If the text has no other reading either, raise ``refusal``; if that is None, raise
+    the error with which the other rules refused the text.
+    """
     try:
         return distinct_readings(_typed(text, one_side))
     except InputError as reason:

@@ -129,8 +129,9 @@ def _without_mass(tree: Node) -> Node:
 
 
 def multiplied_names(relation: tuple[str, Node, Node], shapes: Mapping[str, Shape]) -> dict[str, Shape]:
-    """Return the names without a shape that must be vectors, each with the shape (3, 1): v in ``R*v == w`` for a 3 x 3
-    matrix R and a vector w.
+    """Return {name: (3, 1)} for the names of unknown shape that must be vectors, such as v in ``R*v == w``.
+
+    Here R has the shape (3, 3) and w the shape (3, 1) in ``shapes``.
     """
     columns: dict[str, Shape] = {}
     for side, other in (relation[1:], relation[:0:-1]):

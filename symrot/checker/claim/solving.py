@@ -40,7 +40,10 @@ def is_name_or_rate(tree: Node) -> bool:
 
 
 def quantities_in(tree: Node) -> set[Quantity]:
-    """Return the quantities in a tree: {("x", False), ("x", True)} for ``x + dx/dt``; the number pi is none."""
+    """Return the quantities in a tree, each as (name, whether its time derivative is meant).
+
+    For ``x + dx/dt``, return {("x", False), ("x", True)}. The number pi does not count as a quantity.
+    """
     if is_rate(tree):
         return {(str(tree.args[0].value), True)}
     if is_name(tree):
@@ -112,8 +115,8 @@ def with_highest_rate(left: Node, right: Node) -> tuple[Node, Node, Node] | None
     """Return (x'', m, -k*x) for ``m*x'' + k*x = 0``: the highest derivative, its coefficient, and the right side.
 
     The right side is the sum of the terms without the highest derivative, moved to the right. Return None unless the
-    equation is linear in a single highest derivative, and all derivatives are by time and of single names. Return None
-    also if the terms without the highest derivative are mere numbers.
+    equation is linear in a single highest derivative, and all derivatives are time derivatives of single names. Return
+    None also if the terms without the highest derivative are mere numbers.
     """
     terms = [*terms_of(left), *map(negated, terms_of(right))]
     derivatives = {node for node in nodes_of(*terms) if is_derivative(node)}

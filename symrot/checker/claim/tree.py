@@ -71,7 +71,7 @@ MOST_DERIVATIVES = 8
 """The highest order of a derivative."""
 
 TIME = Node("name", "t")
-"""The name t, by which the derivatives ``diff(omega_1, t)`` are taken."""
+"""The name t of the time; derivatives such as ``diff(omega_1, t)`` are with respect to it."""
 
 
 def is_derivative(node: Node) -> bool:
@@ -98,7 +98,7 @@ def derivative(args: Sequence[Node], span: tuple[int, int] = (0, 0)) -> Node:
 
 
 def differentiated(formula: Node, variable: Node, order: int = 1) -> Node:
-    """Return the derivative of a formula by a variable; for ``diff(x, t)`` and t, return ``diff(x, t, t)``."""
+    """Return the derivative of a formula with respect to a variable: ``diff(x, t, t)`` for ``diff(x, t)`` and t."""
     is_rate_of_time = is_derivative(formula) and formula.args[-1] == variable == TIME
     return Node("call", "diff", (*(formula.args if is_rate_of_time else (formula,)), *[variable] * order))
 

@@ -20,7 +20,7 @@ from symrot.exact.printing import as_text
 __all__ = ["decide_value"]
 
 MORE_DIGITS = 30
-"""A value is computed to this number of digits more than its printed text has characters."""
+"""A value is computed to ``len(printed) + MORE_DIGITS`` digits, where ``printed`` is the text of the printed number."""
 
 _DECIMAL = re.compile(r"\s*([+-]?)(\d*)(?:\.(\d*))?(?:[eE]([+-]?\d{1,3}))?\s*", re.ASCII)
 

@@ -40,8 +40,8 @@ __all__ = [
 MARK = "\N{RIGHTWARDS ARROW}"
 BASES = (("i", "j", "k"), *(tuple(f"e{mark}{axis}" for axis in axes) for mark in ("_", "") for axes in ("123", "xyz")))
 """Groups of names of basis vectors, such as (i, j, k). The names of a group mean the x, y and z axes if a text marks at
-least two of them as vectors (in bold type, with an arrow or a hat) and differentiates none by time. For groups other
-than i, j and k, the text must also have no vectors except those of the group."""
+least two of them as vectors (in bold type, with an arrow or a hat) and has no time derivative of any of them. For
+groups other than i, j and k, the text must also have no vectors except those of the group."""
 
 AXES = ("xyz", "123", "1234", "0123")
 """Endings of the names of components: "xyz" for a_x, a_y and a_z; "1234" and "0123" are for quaternions."""
@@ -191,14 +191,14 @@ def _without_marks(node: Node, spelled: Mapping[str, str], vectors: Sequence[Nod
 
 
 def direction(vector: Node) -> Node:
-    """Return ``v/sqrt(dot(v, v))``, what v with a hat means in a text that has v without a hat too."""
+    """Return ``v/sqrt(dot(v, v))``, the meaning of v with a hat in a text that also has v without a hat."""
     return replace(quotient(vector, length(vector)), span=vector.span)
 
 
 def beside_directions(factors: Sequence[Node]) -> list[Node]:
     """Return the factors of a product, where a vector v becomes its length if its direction v/|v| is also a factor.
 
-    In a text with r and with r under a hat, the product of both is a vector: the r without a hat is a length.
+    In a text with both r and r with a hat, their product is a vector: the r without a hat is a length.
     """
     return [length(factor) if direction(factor) in factors else factor for factor in factors]
 

@@ -173,10 +173,11 @@ def _is_along(name: str, line: str) -> bool:
 
 
 def _where_else(place: str, line: str, name: str) -> str:
-    """Return words for the axis of a formula called ``name`` if the context states another axis, ``line``.
+    """Return words for the axis of a formula called ``name``, which differs from the axis ``line`` of the context.
 
-    Return ``place``, the place in the formula's name, such as "about an end". If it is empty, or if ``line``, such as
-    "about a diameter", goes through the same point of the body, return "about another axis".
+    The words are usually ``place``, the place in the formula's name, such as "about an end". They are "about another
+    axis" if ``place`` is empty, or if ``line``, such as "about a diameter", goes through the point that ``place``
+    names.
     """
     _, bodies = LINES[line]
     places = [own for body, (own, _) in bodies.items() if body in bodies_of_formula(name)]
@@ -222,7 +223,8 @@ def is_at_open_place(context: Context, name: str) -> bool:
 
 
 OPEN_PLACES = tuple(title for title, _, phrases in PLACES if not phrases)
-"""Titles in PLACES that leave the point of the body open: "about the fixed point", since no formula's name has it."""
+"""Titles in PLACES that do not say which point of the body is meant, such as "about the fixed point". No name of a
+derived formula has words for them."""
 
 
 def admits_letters(context: Context, name: str, mapping: Mapping[str, str], letters: Iterable[str]) -> bool:

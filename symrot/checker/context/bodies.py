@@ -323,7 +323,12 @@ def _without_plane(kind: Kind, words: str) -> tuple[str, str]:
 
 
 def _direction(kind: Kind, words: str) -> tuple[str, str]:
-    """Return (axes, other words) for words about a body: axes "xy" for "parallel to its base", "" for no direction."""
+    """Return (axes, other words) for words about a body that may state the direction of an axis.
+
+    The axes are "xy" for "parallel to its base", which leaves open whether x or y is meant, and "" if the words state
+    no direction. ``kind`` is the kind of the body: "perpendicular to its axis" is understood for a rod or a round body
+    only.
+    """
     for kinds, pattern, axes in _DIRECTIONS:
         if kind.title in kinds or kind.shape in kinds:
             rest = re.sub(rf"{_LINE}{pattern}", " ", words, count=1)
@@ -346,10 +351,15 @@ def _dimensions(kind: Kind) -> list[Dimension]:
 
 
 def _letters(kind: Kind, words: str, rest: str) -> tuple[dict[str, str], dict[str, Fraction], str]:
-    """Return a body's letters and their factors, {"R": "d"} and {"R": 1/2} for "diameter d", and the unused words."""
+    """Return (letters, factors, other words) for words that state the dimensions of a body or its moments of inertia.
+
+    For "diameter d", the letters are {"R": "d"} and the factors {"R": 1/2}: the radius R of the derived formulas is
+    d/2. A factor 1 is left out. ``kind`` is the kind of the body, which determines its dimensions. They are looked for
+    in ``words``, as typed, since case matters. ``rest`` are the words in lower case that symrot has not used so far;
+    the other words are ``rest`` without the words for dimensions and moments.
+    """
     letters: dict[str, str] = {}
     factors: dict[str, Fraction] = {}
-    # ``rest`` are the unused words in lower case; in ``words`` case matters
     dimensions = _dimensions(kind)
     for dimension in dimensions:
         nouns = [(noun, Fraction(1)) for noun in _NOUNS.get(dimension.name, ())]

@@ -144,7 +144,10 @@ class Context:
         return " ".join(words for words in own if words)
 
     def fits(self, names: set[str], elsewhere: set[str]) -> bool:
-        """Return whether :meth:`check_names` accepts these arguments."""
+        """Return whether each meaning belongs to a name that occurs; otherwise :meth:`check_names` raises an error.
+
+        ``names`` are the names of the claim, ``elsewhere`` those in its hypotheses and definitions.
+        """
         return not self._absent(names, elsewhere)
 
     def check_names(self, names: set[str], elsewhere: set[str]) -> None:

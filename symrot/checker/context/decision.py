@@ -264,9 +264,11 @@ def _transposed(decisions: Sequence[tuple[Meant, Decision]]) -> Iterator[tuple[M
 
 
 def _on_lacking_letters(claim: Claim, named: NamedFormula, quantity: str, stated: str) -> Verdict | None:
-    """Return "doubtful" if a claim lacks one term or factor of a known formula that its context states; else None.
+    """Return "doubtful" if a claim lacks one term or factor of a known formula that fits its context; else None.
 
-    For instance, ``m*g*l`` lacks the factor ``sin(theta)`` of ``m*g*l*sin(theta)``.
+    For instance, ``m*g*l`` lacks the factor ``sin(theta)`` of ``m*g*l*sin(theta)``. ``quantity`` is the name for which
+    the claim gives a formula, such as omega_1, and ``stated`` are words that this name implies, "first component". The
+    context must state the body.
     """
     context = claim.context
     own_meaning = context.meaning_of(quantity)
@@ -300,7 +302,7 @@ def _is_transposed(target: Any, value: Any) -> bool:
 
 
 def _is_open(decision: Decision) -> bool:
-    """Return whether a decision leaves open that two formulas are equal: it is undecided, or depends on signs."""
+    """Return whether a decision leaves open whether two formulas are equal: it is undecided, or depends on signs."""
     if decision.verdict == "conditional":
         # equal for special values only, such as equal moments of inertia: the formulas differ
         return any(requirement.signs or not requirement.zeros for requirement in decision.requires)

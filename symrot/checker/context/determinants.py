@@ -1,8 +1,8 @@
-"""Claims about the determinant of a rate Jacobian, such as ``det T = -sin(theta)``, whose zeros are the
-singular angles.
+"""Claims about the determinant of a rate Jacobian, such as ``det T = -sin(theta)``.
 
-The determinant depends on the second angle alone. Its sign depends on the order of the angles, which the claim does
-not state: either sign is recognised.
+The rate Jacobian of an Euler sequence is the matrix that maps the rates of its angles to the angular velocity. It is
+singular at the zeros of its determinant (gimbal lock). The determinant depends on the second angle alone. Its sign
+depends on the order of the angles, which the claim does not state: both signs are recognised.
 """
 
 import re
@@ -48,7 +48,9 @@ sequences have the claimed determinant."""
 
 @cache
 def determinants() -> dict[str, Expr]:
-    """Return the determinant of the rate Jacobian of each Euler sequence, the usual sequences first.
+    """Return {sequence: determinant of its rate Jacobian} for all Euler sequences, the usual sequences first.
+
+    The rate Jacobian is the matrix that maps the rates of the angles to the angular velocity.
 
     Examples
     --------
@@ -81,7 +83,7 @@ def verdict_on_determinant(claim: Claim, repair: bool) -> Verdict | None:
 
 
 def _is_determinant(tree: Node, generic: set[str]) -> bool:
-    """Return whether a tree is ``det(T)`` for a matrix T that may be a rate Jacobian.
+    """Return whether a tree is ``det(T)`` for a matrix T that may map angle rates to the angular velocity.
 
     T must be in ``generic``, the matrices that the claim does not define, and must not have a name such as R, which
     usually means a rotation matrix.

@@ -94,7 +94,7 @@ class Meant:
 
     @property
     def identification(self) -> Identification:
-        """The formula ``known`` as an Identification, such as a verdict lists in ``recognised_as``."""
+        """The formula ``known`` as an Identification, the type of the entries of ``Verdict.recognised_as``."""
         return Identification(self.known.name.removesuffix(SQUARED), self.how, self.mapping, self.known.source)
 
 

@@ -94,7 +94,11 @@ def _judged(claim: Claim, named: NamedFormula, verdict: Verdict, stated: Context
 
 
 def _not_of_name(named: NamedFormula, verdict: Verdict) -> Verdict:
-    """Return ``verdict`` as "definition", since a quantity's name states another body or point than its formula."""
+    """Return ``verdict`` changed to "definition" (not judged), with the reason that the name contradicts the formula.
+
+    ``named`` is the quantity of the claim with its formula. Its name, such as ``I_rod``, states a body or point. The
+    formula is that of another body or point: ``verdict`` recognises it.
+    """
     reason = (
         f"the formula is the {verdict.recognised_as[0].name}; but the name {named.name} is for another body or point"
     )

@@ -238,12 +238,13 @@ LINES: dict[str, tuple[tuple[str, ...], dict[str, tuple[str, str]]]] = {
         ("base", "base line", "base edge"), {"a plate": (CORNER, "xy"), "a triangular plate": (CORNER, "x")}
     ),
 }  # fmt: skip
-"""Lines that serve as axes: {title: (phrases, {body: (point, axes)})}.
+"""Lines that serve as axes of bodies: {title: (phrases, {body: (point, axes)})}.
 
-The title is for instance "about a diameter". The phrases are words that users write for the line after "about". The
-inner dictionary has the bodies with such a line. A diameter of a disk goes through the centre of mass along x or y,
-which gives {"a disk": (CENTRE, "xy")}. A derived formula is for the line if its name states this body and point, and
-one of these axes or none."""
+An example of a title is "about a diameter". The phrases are the words that users write after "about" for this line. The
+inner dictionary says where the line is in each body that has it: a diameter of a disk goes through the centre of mass
+along x or y, so that its entry is {"a disk": (CENTRE, "xy")}. The name of a derived formula states a body, a point and
+perhaps an axis. The formula is for the line if the entry of its body has the same point, and also the stated axis if
+there is one."""
 
 UNUSED = frozenset({
     "a", "an", "the", "of", "its", "their", "any", "some", "this", "that", "is", "are", "and", "in", "by",
@@ -284,13 +285,15 @@ def plain_words(text: str) -> str:
 def place_of_words(words: str, formulas: Collection[str] = ()) -> tuple[str, str]:
     """Return the place of an axis that words state, such as "about an end", or "" for none, and the other words.
 
+    ``formulas`` are the names of the body in derived formulas, such as "a disk". A line such as "about a diameter"
+    counts as a place only if the body has this line. Without ``formulas``, the body is unknown, and all lines count.
+
     Examples
     --------
     >>> place_of_words("of a rod about one end")
     ('about an end', 'of a rod')
     """
     titled = [(title, phrases) for title, phrases, _ in PLACES]
-    # an axis such as "about a diameter" counts as a place, if one of the bodies named in ``formulas`` has it
     lines = [(title, phrases) for title, (phrases, bodies) in LINES.items() if not formulas or {*bodies} & {*formulas}]
     places = [
         (match, title)

@@ -122,11 +122,10 @@ def _original(rest: str, words: str) -> str:
 
 
 def _readings_of_name(part: str, prefix: str, is_rate: bool = False) -> Iterator[str]:
-    """Yield the names that ``part``, a typed name, can mean: for ``x_dot``, the name x_dot itself and dx, the rate of
-    x.
+    """Yield the names that ``part``, a typed name, can mean: for ``x_dot``, the name x_dot and the rate dx of x.
 
     For ``x'``, yield dx if ``is_rate``, else x_prime. Raise InputError, with a message that begins with ``prefix``, if
-    ``part`` is no name.
+    ``part`` is not a name.
     """
     bare = part.rstrip("'\u2032")
     primes = len(part) - len(bare)

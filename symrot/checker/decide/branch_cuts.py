@@ -54,8 +54,8 @@ class BranchCut:
 def branch_cuts(formulas: Sequence[Expr]) -> Iterator[BranchCut]:
     """Yield the branch cuts of the functions atan2 in formulas, each once.
 
-    A cut of ``atan2(y, x)`` is left out if y contains other functions than sine and cosine, since points with y = 0 are
-    then hard to find, and if x is never negative.
+    The cut of ``atan2(y, x)`` is left out in three cases: y is a number; x is never negative, so that there is no cut;
+    or y contains a function other than sine and cosine, since points with y = 0 are then hard to find.
     """
     jumps = sorted({node for formula in formulas for node in formula.atoms(atan2)}, key=str)
     known = set()

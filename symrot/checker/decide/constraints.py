@@ -1,8 +1,10 @@
 """The real points at which a claim is to hold, as polynomial constraints on the generators (unknowns) of its ring.
 
-Hypotheses, ``sin^2 + cos^2 - 1`` of angles, and ``root^n - base`` of roots are zero; divisors are not. A ``free``
-generator may have every value that these constraints allow. A constraint with a generator that is not free, such as
-tanh(x), is not used.
+Hypotheses, ``sin^2 + cos^2 - 1`` of angles, and ``root^n - base`` of roots are zero; divisors are not. A generator is
+called free if it may have every value that these constraints allow: a symbol, the sine or cosine of an angle whose
+symbols occur nowhere else, or a root of a formula in such generators. The generator tanh(x) is not free, since it
+depends on x in a way that polynomials cannot express. A constraint that contains it is left out: a proof that no point
+obeys the other constraints stays valid, but a point that obeys the others may violate this one.
 """
 
 from dataclasses import dataclass
@@ -64,7 +66,7 @@ class Constraints:
 
     @cached_property
     def involved(self) -> tuple[int, ...]:
-        """The free generators (unknowns of the ring) that occur in a constraint, in order."""
+        """Indices of the free generators that occur in a constraint, in ascending order."""
         return tuple(sorted(self.free & occurring([*self.zeros, *self.nonzero, *self.products])))
 
 

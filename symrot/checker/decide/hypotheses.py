@@ -153,11 +153,13 @@ class Hypotheses:
     def _true_number(self, need: Need, is_of_claim: bool) -> bool:
         """Return whether a condition without symbols, such as ``2 - 1 > 0``, is proven; False if it may fail.
 
+        ``is_of_claim`` says that the sides and hypotheses of the claim, as they are written, are real numbers only
+        under this condition.
+
         Raises
         ------
         InputError
-            If the condition is proven to be false and ``is_of_claim``: if the sides and hypotheses of the claim, as
-            they are written, are real numbers only under this condition.
+            If ``is_of_claim`` and the condition is proven to be false.
         """
         interval = enclosure(need.formula)
         if interval is None:
@@ -169,7 +171,10 @@ class Hypotheses:
         return not fails and (zero or holds(need, {}))
 
     def _drawn_point(self, needs: Sequence[Need], attempts: int) -> bool:
-        """Return whether one of ``attempts`` random points obeys the hypotheses exactly and meets ``needs``."""
+        """Return whether one of ``attempts`` random points obeys the hypotheses exactly and meets ``needs``.
+
+        A :class:`Need` is a condition such as ``x >= 0``, without which ``sqrt(x)`` has no real value.
+        """
         # the points need not obey a hypothesis that is not among the constraints
         if not self.constraints.complete:
             return False

@@ -24,10 +24,12 @@ from symrot.exact.ring.ratio import TooLarge
 __all__ = ["Infeasibility", "infeasibility_proof", "vanishes_on"]
 
 MOST_CASES = 40
-"""Largest number of cases of a proof; a case counts again after each Groebner basis that is computed for it."""
+"""The largest number of cases of a proof.
+
+If a product x*y must be zero, the proof has the cases x = 0 and y = 0, which may have further cases in them. A case
+counts again after each Groebner basis that is computed for it."""
 MOST_ROUNDS = 6
-"""Largest number of Groebner bases that are computed one after the other on the way to one case. In each case of a
-proof, one factor of a vanishing product is zero."""
+"""The largest number of Groebner bases for one case, including the bases for the cases that contain it."""
 
 MOST_PRODUCTS = 150_000
 """The largest number of products of terms in all Groebner bases of one proof."""
@@ -175,7 +177,10 @@ class _Prover:
         return self.one_signed(poly) or self.rootless(poly) or self.out_of_range(poly, zeros)
 
     def rootless(self, poly: PolyElement) -> bool:
-        """Return whether a polynomial in one unknown has no real root with the unknown's sign, by Sturm's theorem."""
+        """Return whether a polynomial in one unknown has no real root that the unknown may equal, by Sturm's theorem.
+
+        Negative roots do not count if the constraints assume that the unknown is positive, and so on for other signs.
+        """
         places = occurring([poly])
         if len(places) != 1:
             return False

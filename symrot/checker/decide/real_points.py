@@ -22,7 +22,8 @@ __all__ = ["ATTEMPTS", "RealPoint", "real_points"]
 ATTEMPTS = 120
 """Default number of attempts to find a random point that obeys the constraints."""
 RATIONAL = 60
-"""Number of attempts, the first ones, in which all values are rational; later ones may use irrational roots."""
+"""In this number of attempts, the first ones, all values of a point are rational. Later attempts may use irrational
+roots of equations."""
 
 MOST_STEPS = 60
 """Largest number of steps in one attempt to find a point; a step chooses values of unknowns or solves an equation."""

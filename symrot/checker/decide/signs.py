@@ -106,7 +106,7 @@ def _by_range(formula: Expr, strict: bool) -> bool:
 
 
 def _by_absolute_values(formula: Expr) -> bool:
-    """Return whether the triangle inequality proves a formula nonnegative, as |x| + |y| - |x + y|."""
+    """Return whether the triangle inequality proves a formula nonnegative, such as |x| + |y| - |x + y|."""
     terms = Add.make_args(formula)
     negative = [term for term in terms if term.could_extract_minus_sign()]
     if len(negative) == 1:

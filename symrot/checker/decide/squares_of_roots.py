@@ -46,7 +46,7 @@ def _roots(formula: Expr) -> list[Expr]:
 
 
 def _root_of_square(formula: Expr) -> Expr | None:
-    """Return D for a polynomial D^2; None if it is no square."""
+    """Return D if a polynomial is a square D^2 with rational coefficients of D; otherwise None."""
     if formula == 0:
         return formula
     constant, pairs = factor_list(formula)

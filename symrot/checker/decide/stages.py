@@ -1,4 +1,9 @@
-"""The stages by which a claim with hypotheses is proven, refuted or made conditional, in their order."""
+"""The stages by which a claim with hypotheses is proven, refuted or made conditional, in their order.
+
+The formulas of a claim are read into a polynomial ring, in which differences are reduced to zero. The divisors of the
+ring are the formulas by which a proof may divide: a proof holds where they are nonzero, so that conditions such as
+``x != 0`` belong to its result.
+"""
 
 from collections.abc import Mapping, Sequence
 from dataclasses import dataclass, field
@@ -32,8 +37,8 @@ from symrot.exact.ring.roots import written
 __all__ = ["STAGES", "ClaimCase", "domain_of_text", "leave_open", "nearby_witness"]
 
 MUCH_LARGER = 5
-"""Ratio of sizes (numbers of symbols and operations) above which the smaller of two formulas is chosen as the shorter
-one, without writing both as text."""
+"""If one of two formulas has more than this many times the symbols and operations of the other, the other one is taken
+as the shorter formula. The lengths of their texts are then not compared."""
 
 MOST_PIECES = 60
 """A sum that must be nonzero is simplified only if it has fewer symbols and operations than this. The simplified sum
@@ -52,9 +57,10 @@ class ClaimCase(Case):
     ----------
     equation : Equation
     nonzero_factors : set of int
-        Indices of the ring's divisors that a hypothesis states to be nonzero.
+        Indices of those divisors of ``ring`` that a hypothesis states to be nonzero.
     numerators : list of PolyElement
-        The numerators of left - right for the unproven entries, reduced by the hypotheses.
+        The numerators of left - right, reduced by the hypotheses, one for each entry of a matrix equation for which
+        equality is not proven.
     branches : list of Requirement or None
         Conditions on signs under which the claim is true; empty if none is needed, None if none is known.
     """
@@ -118,7 +124,7 @@ class ClaimCase(Case):
         return Decision("undecided", self.conditions, reason=reason)
 
     def can_hold(self, requirement: Requirement) -> bool:
-        """Return whether a point is known at which a condition holds and both sides are real numbers."""
+        """Return whether a point is known at which ``requirement`` holds and both sides of the claim are real."""
         # a condition that holds nowhere is not offered
         signs = [Need(value, ">= 0") for value in (*requirement.signs, *domain.split_radicands(self.ring))]
         if not self.hypotheses.consistent_with(requirement.zeros):
@@ -127,7 +133,7 @@ class ClaimCase(Case):
 
 
 def nonzero_by_hypothesis(case: ClaimCase) -> None:
-    """Add the formulas that hypotheses state to be nonzero to the ring, so that proofs may divide by them."""
+    """Add the formulas that hypotheses state to be nonzero to the divisors of the ring: a proof may divide by them."""
     for formula in case.equation.nonzero:
         case.ring.ratios.invert(case.ring.ratio(formula), formula)
     # this is the first stage: the ring has no other divisors yet
@@ -135,9 +141,10 @@ def nonzero_by_hypothesis(case: ClaimCase) -> None:
 
 
 def domain_of_text(case: ClaimCase) -> None:
-    """Tell ``case.ring`` to treat all divisors in the claim's text as nonzero; a proof then has this as a condition.
+    """Add all divisors in the claim's text, such as x in ``1/x``, to the divisors of ``case.ring``.
 
-    Raise InputError if it is proven that no values of the letters make both sides real, or satisfy a hypothesis.
+    A proof may then divide by them, and has the condition that they are nonzero. Raise InputError if it is proven that
+    no values of the letters make both sides real, or satisfy a hypothesis.
     """
     for divisor in case.equation.divisors:
         case.ring.ratios.invert(case.ring.ratio(divisor), divisor)
@@ -148,8 +155,10 @@ def nearby_witness(case: ClaimCase) -> None:
     """Search for a counterexample among simple points, and store it in ``case``.
 
     The search tries rational points, then a few points that obey the hypotheses. For a claim without hypotheses, it
-    tries rational points, then points in closed form, such as pi/6. The numerators of the unproven entries are stored
-    in ``case.numerators``.
+    tries rational points, then points in closed form, such as pi/6.
+
+    This stage also stores ``case.numerators`` for the stages after it: the numerators of left - right for the entries
+    that are not yet proven equal.
     """
     ring, hypotheses = case.ring, case.hypotheses
     case.numerators = [ring.reduce(case.residuals[place].numerator) for place in case.unproven]
@@ -271,10 +280,11 @@ def _shorter(first: Expr, second: Expr) -> Expr:
 def _branches(
     ring: FormulaRing, numerators: Sequence[PolyElement]
 ) -> tuple[list[Requirement] | None, tuple[FormulaRing, ...]]:
-    """Return the conditions on signs that make a claim true, such as ``x >= 0``, and further rings that the proof uses.
+    """Return (conditions, rings): the conditions on signs that make a claim true, and further rings for the proof.
 
-    The conditions are [] if none is needed, and None if none is known. A further ring extends ``ring``, for example by
-    the angle of an arcsine; its divisors become conditions of the claim too.
+    An example of a condition is ``x >= 0``. The conditions are [] if none is needed, and None if none is known. A
+    further ring is ``ring`` with more generators, for example the angle of an arcsine. The claim then needs the
+    condition that the divisors of the further ring are nonzero too.
     """
     try:
         branches = branch_requirements(ring, numerators) if ring.roots else None

@@ -23,9 +23,9 @@ WORDS_NOTE = "roll, pitch and yaw are read as the angles phi, theta and psi"
 def with_usual_letters(claim: Claim) -> EquivalentClaim | None:
     """Return a claim with other names: p, q, r in place of P, Q, R, or phi, theta, psi in place of roll, pitch, yaw.
 
-    P, Q, R are replaced only if the claim has no other letters than phi, theta and psi, and the rate of one of these
-    angles. The words roll, pitch and yaw are replaced only if none of phi, theta and psi occurs. Return None for other
-    claims, and for claims with a context, hypotheses or definitions.
+    P, Q and R are replaced only in a claim that contains the rate of phi, theta or psi, and that has no letters except
+    P, Q, R, phi, theta and psi. The words roll, pitch and yaw are replaced only if none of phi, theta and psi occurs.
+    Return None for other claims, and for claims with a context, hypotheses or definitions.
     """
     if claim.relation is None or claim.define or claim.hypotheses or claim.context:
         return None

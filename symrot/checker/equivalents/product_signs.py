@@ -1,6 +1,7 @@
-"""Claims whose context defines products of inertia without the minus sign, which is in symrot's formulas.
+"""Claims whose context defines products of inertia without a minus sign, as ``I_xy = integral of x*y dm``.
 
-So each claim is decided with the opposite sign of every product of inertia.
+symrot's formulas have ``I_xy = -integral of x*y dm``. Such a claim is therefore decided with the opposite sign of every
+product of inertia.
 """
 
 from dataclasses import replace

@@ -50,9 +50,9 @@ BRACED = ("\\underbrace", "\\overbrace")
 """Commands that draw a brace below or above a formula. An index or power after such a command, as in
 ``\\underbrace{a + b}_{sum}``, is a remark on the formula and is left out."""
 
-LONGEST_NUMBER = 8
-"""The number of tokens after ``\\quad`` in which an equation number such as ``(5.12)`` is searched. The token after the
-number must be one of these tokens too."""
+LONGEST_EQUATION_NUMBER = 8
+"""The largest number of tokens of an equation number such as ``(5.12)`` after ``\\quad``, together with the token after
+it, which must be the end of the formula or line."""
 
 SPELLED = {
     **{name: f"\\{name}" for name in ("sin", "cos", "tan", "cot", "sec", "csc", "sinh", "cosh", "tanh", "exp", "ln",
@@ -175,7 +175,7 @@ class _Expansion:
 
         Return 0 if there is none at the cursor.
         """
-        rest = self.pieces[self.place : self.place + LONGEST_NUMBER]
+        rest = self.pieces[self.place : self.place + LONGEST_EQUATION_NUMBER]
         texts = [piece.text for piece in rest]
         end = texts.index(")") if texts[:1] == ["("] and ")" in texts[:-1] else 0
         inside = rest[1:end]

@@ -137,8 +137,8 @@ def _numbered(pieces: Sequence[Token], numbered: Mapping[int, tuple[str, str]]) 
 def _has_rate(pieces: Sequence[Token], digits: Collection[str]) -> bool:
     r"""Return whether a text has the rate of a numbered angle, such as ``\dot\theta_1``, and all numbers are 1, 2 or 3.
 
-    The numbers are the 1 of this angle and ``digits``, the numbers of possible short forms such as ``c_2``, which would
-    mean cos(theta_2).
+    The numbers are the number of this angle, here 1, and ``digits``: the numbers in names such as ``c_2``, which may be
+    short for cos(theta_2).
     """
     for place, piece in enumerate(pieces[:-3]):
         grouped = pieces[place + 1].text == "{"

@@ -313,7 +313,7 @@ class SumsPart(Cursor):
         return len(digit.text) > 1 or self.source[digit.start + 1 : digit.start + 2].isdigit()
 
     def base(self, item: tree.Node) -> Node:
-        """Parse one factor without its exponents, which starts with ``item``, and return its tree."""
+        """Parse the factor that starts with ``item``, without exponents after it, and return its tree."""
         if item.kind == "number":
             return number(Fraction(item.text))
         if item.text == "\\pi":

@@ -25,9 +25,10 @@ value is simply its power (PRIME + 1)/4.
 DRAWS = tuple((pow(3, 101 + 2 * n, PRIME), pow(3, 102 + 2 * n, PRIME)) for n in range(48))
 """Pairs (value of one symbol, value of all other symbols), tried in turn until the formula is defined."""
 MOST_UNDEFINED = 3
-"""The largest number of pairs in DRAWS with which one formula is evaluated. Each pair gives its first number to one
-symbol and its second number to all other symbols. So a formula that is undefined for all these pairs, such as
-x/(A - B), is probably undefined wherever two symbols are equal."""
+"""The largest number of pairs in DRAWS with which a formula is evaluated. After that, it is evaluated in another way.
+
+A pair gives its first number to one symbol and its second number to all other symbols. A formula such as x/(A - B),
+which is undefined for all these pairs, is probably undefined wherever two symbols are equal."""
 PARTS = 4
 """The number of parts into which an angle x is divided: cos(x) and sin(x) are computed from cos(x/4) and sin(x/4), so
 that cosines and sines of x/2 and x/4 have values too."""
@@ -162,12 +163,12 @@ class Fingerprint:
     signatures: tuple[Values, ...]
     idle: tuple[Expr, ...] = ()  # atoms in the formula that do not change its value
 
-    def rows(self, order: Sequence[int]) -> list[Values]:
+    def scaled_signatures(self, order: Sequence[int]) -> list[Values]:
         """Return the signature of each atom, scaled so that the formulas x and 2*x have the same signatures.
 
-        An atom is a symbol, function or derivative in the formula. Its signature has one value for each entry of the
-        formula; ``order`` are the indices of these entries in the order of the values. All values are divided by one
-        number: the sum of all atoms' values for the first entry with a nonzero sum.
+        A signature has one value for each entry of a matrix formula, or one value for a scalar formula. ``order`` are
+        the indices of the entries in the order in which their values are returned. All values are divided by the sum of
+        the atoms' values for one entry, the first entry in this order for which the sum is not zero.
         """
         total = [sum(column) % PRIME for column in zip(*self.signatures, strict=True)]
         # the first entry whose values have a nonzero sum
@@ -179,7 +180,7 @@ class Fingerprint:
 
         The hash depends neither on the names of symbols nor on a constant factor.
         """
-        return sha256(repr((shape, sorted(self.rows(order)))).encode()).hexdigest()[:16]
+        return sha256(repr((shape, sorted(self.scaled_signatures(order)))).encode()).hexdigest()[:16]
 
 
 def fingerprint(entries: Sequence[Expr]) -> Fingerprint:
@@ -216,10 +217,12 @@ def fingerprint(entries: Sequence[Expr]) -> Fingerprint:
 
 
 def in_lowest_terms(formula: Expr) -> bool:
-    """Return whether a product is in lowest terms.
+    """Return whether a product is proven to be in lowest terms.
 
-    The product ``(a**2 - b**2)/(a - b)`` is not, because its divisor a - b divides its numerator. Return False also if
-    this test cannot tell: for a divisor that is linear in no atom, and for a formula without a value modulo ``PRIME``.
+    The product ``(a**2 - b**2)/(a - b)`` is not, because its divisor a - b divides its numerator. The test evaluates
+    the rest of the formula modulo ``PRIME`` at a zero of each divisor. Return False also if the test cannot tell: for a
+    divisor that is not linear in any symbol, function or derivative, and for a formula without a value modulo
+    ``PRIME``, such as exp(x).
     """
     # quicker than cancel: a divisor that is linear in x divides the rest only if the rest is 0 at its root
     atoms = sorted(atoms_of([formula]), key=str)
@@ -243,10 +246,11 @@ def _misses(rest: Expr, divisor: Expr, point: Mapping[Expr, int]) -> bool:
 
 
 def _from_one_draw(entries: Sequence[Expr], written: Sequence[Expr]) -> Fingerprint | None:
-    """Return the fingerprint of the formula ``entries``, evaluated with the first pair of numbers in DRAWS, or None.
+    """Return the :class:`Fingerprint` of a formula, evaluated with the first pair of numbers in DRAWS, or None.
 
-    ``written`` are the formula's atoms (symbols, functions, derivatives). Return None if the formula has no value for
-    this pair, or does not change with one of its atoms: the caller then tries other pairs of numbers.
+    ``entries`` are the entries of a matrix, or the one entry of a scalar formula; ``written`` are its atoms (symbols,
+    functions, derivatives). Return None if the formula has no value for this pair, or does not change with one of its
+    atoms: the caller then tries other pairs of numbers.
     """
     raised, others = DRAWS[0]
     point = dict.fromkeys(written, others)

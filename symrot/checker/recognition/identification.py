@@ -73,7 +73,7 @@ def identify(
     ----------
     formula : str, Expr or Matrix
         Text in SymPy syntax or as typed, LaTeX (text with a backslash or a dollar sign), or a SymPy value. An equation
-        such as ``I = ..``, which only names a formula, stands for this formula.
+        such as ``I = ..``, which gives a formula for the quantity I, stands for this formula.
     most : int
         How many names to return at most.
     body, frame, sequence : str
@@ -221,7 +221,11 @@ def identified(
 
 
 def _changes(match: Identification) -> tuple[int, int, int]:
-    """Return a sort key: how many rearrangements, renamed symbols and changed first letters a match needs."""
+    """Return the sort key of a match, smallest if the claim is written most like the known formula.
+
+    It has three numbers: the changes of the formula as a whole, such as a transposed matrix or another sign; the
+    symbols of the known formula that have another name in the claim; and those of them that begin with another letter.
+    """
     others = sum(mine.lstrip("d")[0].lower() != new[0].lower() for mine, new in match.mapping.items())
     return bool(match.how) + match.how.count(" and "), len(match.mapping), others
 

@@ -37,8 +37,8 @@ LONGEST = 6000
 as "moment of inertia of a disk, x axis"."""
 
 LONGEST_DERIVED = 900
-"""The largest number of characters in the text of a formula in ``known_formulas.toml`` that has no name of its own. It
-is one side of an equation in a step of a derivation, and is named after this step."""
+"""The largest number of characters in the text of a formula in ``known_formulas.toml`` that is named after a step of a
+derivation. Such a formula is one side of an equation in this step."""
 
 
 @dataclass(frozen=True)
@@ -157,8 +157,9 @@ def _selected(
     """Yield (key, formula) for formulas with at least ``least`` symbols and at most ``longest`` characters.
 
     The key is the hash by which the formula is looked up, with ``=`` in front if ``is_relation``. Leave out formulas
-    without such a hash (:func:`fingerprint` raises NotInField), repetitions, and most formulas whose entries are just
-    different symbols.
+    without such a hash (:func:`fingerprint` raises NotInField) and repetitions. Leave out, too, formulas whose nonzero
+    entries are nothing but different symbols, except the formulas named in ``GENERAL`` and ``OF_ONE_ENTRY`` and those
+    for a function of the quantity, such as its square.
     """
     general = (*GENERAL, *OF_ONE_ENTRY)
     of_letters = {*(name for name, *_ in _formulas_of(along_axes)), GYROSCOPE, *SCALAR_PRODUCTS, *ANY_VECTORS, *general}

@@ -1,7 +1,8 @@
 """Renamings of the symbols of a known formula that respect the axes and angles in the names of the symbols.
 
-``I_1*omega_1' = (I_3 - I_2)*omega_2*omega_3`` becomes Euler's equation by exchanging I_2 and I_3, but no author means
-that: omega_2 and omega_3 keep their axes.
+The equation ``I_1*omega_1' = (I_3 - I_2)*omega_2*omega_3`` has a wrong sign. Exchanging the symbols I_2 and I_3 would
+turn it into Euler's equation. This renaming does not respect the axes: it moves the two moments of inertia to other
+axes, but leaves omega_2 and omega_3 where they are. So the equation is not taken for Euler's equation in other letters.
 """
 
 import re
@@ -64,10 +65,10 @@ def is_consistent(renaming: Sequence[tuple[str, str]], fixed: bool = False) -> b
 
 @cache
 def _pair_of_quantities(known: str, new: str) -> tuple[str, str]:
-    """Return the quantities of which both names are rates: (phi, psi) for ``dphi`` and ``diff(psi(t), t)``.
+    """Return both names without their time derivatives: (phi, psi) for ``dphi`` and ``diff(psi(t), t)``.
 
-    A function of time counts as its quantity: ``psi(t)`` as psi. If ``new`` is neither a rate nor a function of time,
-    return both names as they are.
+    A function of time becomes the name of its quantity: ``psi(t)`` becomes psi. If ``new`` is neither a rate nor a
+    function of time, return both names unchanged.
     """
     quantity = quantity_of(new)
     return (quantity_of(known), quantity) if quantity != new else (known, new)
@@ -137,7 +138,7 @@ def quantity_of(name: str) -> str:
 def axes_of(name: str) -> frozenset[int]:
     """Return the axes that a name states: {1, 2} for I_xy, {3} for omega_3, empty for omega.
 
-    The axis 0 means the scalar part of a quaternion, as in q_0.
+    The axis 0 means the scalar part of a quaternion, such as q_0.
     """
     name = re.sub("(_bar|_prime)+$", "", name)
     if re.fullmatch(r"[IJk]_?0|(omega|theta|v)_?0", name):

@@ -39,10 +39,10 @@ def pairings(theirs: Fingerprint, own: Fingerprint, order: Sequence[int]) -> Ite
     ``order[i]`` of the claim's formula.
     """
     mine: dict[Values, list[Expr]] = {}
-    for atom, row in zip(own.atoms, own.rows(order), strict=True):
+    for atom, row in zip(own.atoms, own.scaled_signatures(order), strict=True):
         mine.setdefault(row, []).append(atom)
     groups: dict[Values, list[Expr]] = {}
-    for atom, row in zip(theirs.atoms, theirs.rows(range(len(theirs.signatures[0]))), strict=True):
+    for atom, row in zip(theirs.atoms, theirs.scaled_signatures(range(len(theirs.signatures[0]))), strict=True):
         groups.setdefault(row, []).append(atom)
     if {row: len(atoms) for row, atoms in mine.items()} != {row: len(atoms) for row, atoms in groups.items()}:
         return

@@ -48,9 +48,9 @@ def _base_and_exponent(factor: Node) -> tuple[Node, Fraction]:
 
 
 def with_ordered_products(tree: Node, is_matrix: Callable[[Node], bool]) -> Node:
-    """Return a tree with sorted vectors and no scalars in dot and cross products.
+    """Return a tree in which dot and cross products have sorted vectors, and their scalar factors stand in front.
 
-    ``cross(m*v, a)`` becomes ``-m*cross(a, v)``. A product with an argument that is no matrix keeps its arguments.
+    ``cross(m*v, a)`` becomes ``-m*cross(a, v)``. A dot or cross product with a scalar argument keeps its arguments.
     """
     args = tuple(with_ordered_products(child, is_matrix) for child in tree.args)
     made = replace(tree, args=args)

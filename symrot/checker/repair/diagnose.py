@@ -60,9 +60,10 @@ The corrected claim, such as ``a == a``, says nothing, and so is not offered as 
 AS_NEAR = 0.35
 """Largest difference in cost between two edits of a claim that count as about equally probable.
 
-If an edit turns the claim into a formula such as ``a == a``, which says nothing, it is not offered; but repairs are
-offered only if they cost at most this much more, since they are less probable otherwise. A formula that equals a repair
-and is written in another way is offered too, if it costs at most this much more than the cheapest repair.
+An edit that turns the claim into ``a == a`` may undo the author's fault, but is not offered as a repair, since the
+result says nothing. A repair that costs over AS_NEAR more than the cheapest edit of this kind is not offered either,
+since the fault that this edit undoes is more probable. A formula that equals a repair but is written in another way is
+offered too, if it costs at most AS_NEAR more than the cheapest repair.
 """
 
 MOST_COSTLY = 9.0
@@ -224,7 +225,8 @@ class _Search:
         """Return at most ``most`` repairs: the first candidates that are proven to be true.
 
         A candidate that is true only in a range such as 0 <= x <= pi is also a repair, with this range as a condition.
-        For a claim that is itself "conditional", it is no repair. At most MOST_PROOFS proofs are tried.
+        But if the verdict on the claim itself is "conditional", only candidates that are true without a condition are
+        repairs. At most MOST_PROOFS proofs are tried.
         """
         repairs: list[Repair] = []
         attempts = 0

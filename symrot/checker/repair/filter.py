@@ -256,13 +256,16 @@ class NumericFilter:
 
 @dataclass(frozen=True)
 class TriedPaths:
-    """A function of a path in a tree: whether an edit of the part at this path could make the claim true."""
+    """A function of a path in a tree: whether an edit of the part at this path could make the claim true.
+
+    If a matrix has several wrong entries, an edit inside one entry cannot make the claim true.
+    """
 
     cells: tuple[Path, ...]  # paths of the entries, if the tree is a written-out matrix
     only_wrong: tuple[Path, ...]  # path of the only wrong entry; empty if several entries are wrong
 
     def __call__(self, path: Path) -> bool:
-        """Return whether the part at a path is in no matrix entry, or in the only wrong one."""
+        """Return False for a part inside a matrix entry that is not the only wrong entry; True for other parts."""
         inside = next((cell for cell in self.cells if path[: len(cell)] == cell), None)
         return inside is None or inside in self.only_wrong
 
@@ -285,7 +288,10 @@ def is_nontrivial(tree: Node) -> bool:
 
 
 def _divides_by_itself(tree: Node) -> bool:
-    """Return whether a product in a tree has a factor that is no number, and also divides by this factor: ``x/y*y``."""
+    """Return whether a product in a tree multiplies and divides by the same factor, such as y in ``x/y*y``.
+
+    Factors that are numbers do not count.
+    """
     for _, node in walk(tree):
         if node.kind == "product":
             below = {part for factor in node.args if factor.kind == "inv" for part in factors_of(factor.args[0])}

@@ -24,13 +24,16 @@ from symrot.exact.ring.ring import FormulaRing, as_zero
 __all__ = ["exchanged_definitions", "missing_matrices", "missing_terms"]
 
 MOST_BRACKETS = 12
-"""Largest number of places inside a formula (a side or matrix entry) that are tried for a missing term m.
+"""Largest number of places inside a formula (a side or matrix entry) where the search adds a missing term in brackets.
 
-In ``a*b`` the places are a and b, which gives ``(a + m)*b`` and ``a*(b + m)``.
+In ``a*b`` the places are a and b: a missing term m gives ``(a + m)*b`` and ``a*(b + m)``.
 """
 
 MOST_BRACKETS_OF_LARGE = 2
-"""As MOST_BRACKETS, for a formula with at least ``LARGE`` nodes (symbols, numbers and operations)."""
+"""Largest number of places where the search adds a missing term in brackets to a large formula.
+
+It replaces MOST_BRACKETS for a formula with at least ``LARGE`` nodes (symbols, numbers and operations).
+"""
 
 LARGE = 300
 
@@ -48,7 +51,7 @@ The missing term is computed from this difference. If the difference is longer, 
 
 
 def missing_terms(numeric: NumericFilter) -> Iterator[Candidate]:
-    """Yield repairs that add one missing term to each wrong entry of a side (to the whole side, if it is no matrix).
+    """Yield repairs that add one missing term to each wrong entry of a side (to the whole side, if it is a scalar).
 
     The term is the exact difference of the two sides in the entry. If only one entry is wrong, repairs follow that add
     a term to a part of the entry: if ``a*b`` lacks a*m, to the factor b, which gives ``a*(b + m)``.

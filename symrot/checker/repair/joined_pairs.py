@@ -20,7 +20,7 @@ MOST_JOINED = 400
 DIGITS = 8
 """Number of decimals to which the effects of edits (changes of left - right, or of left/right) are compared.
 
-Before the comparison, each effect is divided by the largest number in the effect that makes the sides equal.
+Before the comparison, each effect is divided by the largest entry of the effect that a pair of edits must have.
 """
 
 Values = tuple[float, ...]
@@ -56,8 +56,8 @@ def pair_of(numeric: NumericFilter, first: Change, second: Change) -> tuple[Chan
 Effects = tuple[Values, dict[int, Values]]
 """A pair (effect that two edits must have together to make the sides equal, {index of an edit: its effect alone}).
 
-The effect of an edit is how much it reduces left - right, for each matrix entry, or the factor by which it divides
-left/right.
+The effect of an edit is the amount by which it reduces left - right, one number for each matrix entry; or it is the
+factor by which the edit divides left/right.
 """
 
 
@@ -109,9 +109,10 @@ def _quotients(numeric: NumericFilter, changes: Sequence[Change]) -> Effects:
 def _completing(effects: Effects, rest: Callable[[float, float], float]) -> Iterator[tuple[int, int]]:
     """Yield pairs of indices of two edits that together make both sides equal at the first test point.
 
-    ``effects`` is the result of `_differences` or `_quotients`: the effect w that both edits must have together, and
-    the effect e of each edit. ``rest(w, e)`` is the effect that the other edit must have: w - e for differences, w/e
-    for quotients.
+    ``effects`` is the result of `_differences` or `_quotients`. It has the effect w that two edits must have together,
+    and the effect e of each edit alone: the amount by which the edit reduces left - right, or the factor by which it
+    divides left/right. If one edit of a pair has the effect e, the other one must have the effect ``rest(w, e)``: w - e
+    for differences, w/e for quotients.
     """
     whole, single = effects
     scale = max(map(abs, whole), default=0.0)

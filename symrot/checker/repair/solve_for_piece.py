@@ -69,7 +69,7 @@ class Entry:
 
 
 class Vocabulary:
-    """Short products of a claim's symbols, functions and bracketed sums, for a look-up of a product by its values."""
+    """Short products of a claim's symbols, functions and bracketed sums, found by their values at the test points."""
 
     def __init__(self, numeric: NumericFilter) -> None:
         self.numeric = numeric
@@ -144,7 +144,7 @@ class Vocabulary:
         return values[0] / values[1]
 
     def find(self, values: Values) -> Iterator[tuple[Entry, Fraction]]:
-        """Yield (product, ratio) for each product of which ``values`` are a rational multiple: ratio times the product.
+        """Yield (product, ratio) for each product whose values, times a rational ratio, are ``values``.
 
         Products of few factors come first. Nothing is yielded if one of ``values`` is zero.
         """
@@ -250,10 +250,11 @@ def _candidate(numeric: NumericFilter, place: str, path: Path, made: Node, edit:
 
 
 def _needed(numeric: NumericFilter, place: str, path: Path, made: Node, start: Values) -> Values | None:
-    """Return the values that the unknown ``HOLE`` in ``made`` must have if ``made`` replaces the part at ``path``.
+    """Return the values that an unknown part of ``made`` must have to make the claim true at the test points.
 
-    ``place`` is the side or definition with this part. There is one value for each test point, sought from ``start``
-    on; None if the search fails.
+    In ``made``, the placeholder ``HOLE`` stands for the unknown part. The formula ``made`` replaces the part of the
+    claim at ``path`` in the side or definition ``place``. The secant method computes one value for each test point,
+    from the first guess in ``start``. Return None if it fails at a point.
     """
     tree = replaced(numeric.tree_at(place), path, made)
     if place not in SIDES and not numeric.sensible(place, tree):
@@ -269,7 +270,7 @@ def _needed(numeric: NumericFilter, place: str, path: Path, made: Node, start: V
 
 
 def _root(numeric: NumericFilter, point: Point, change: Sequence[Change], start: float) -> float | None:
-    """Return the value of the unknown ``HOLE`` that makes both sides equal at a point; None if the search fails."""
+    """Return the value of the placeholder ``HOLE`` that makes both sides equal at a point; None if the search fails."""
 
     def differences(value: float) -> list[float]:
         point.symbols[HOLE.value] = value

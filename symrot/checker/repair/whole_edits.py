@@ -15,14 +15,14 @@ from symrot.errors import InputError
 
 __all__ = ["after_whole_edits"]
 
-WHOLE = (
+FAULTS_OF_WHOLE_SIDES = (
     "overall_sign", "frame_body_space", "active_passive_transpose", "commutator_order", "quaternion_product_order",
     "wrong_sequence_type", "inertia_product_sign",
 )  # fmt: skip
 """Codes of the faults that usually change all values of a side or definition, such as a transposed rotation."""
 
 MOST_WHOLE = 14
-"""The largest number of edits that undo a fault in ``WHOLE`` and are tried as the first of two edits of a claim."""
+"""The largest number of edits that undo a fault of a whole side and are tried as the first of two edits of a claim."""
 
 MOST_EDITS = 3000
 """For each first edit: the largest number of second edits that are tried in one side or definition of the claim."""
@@ -34,10 +34,11 @@ MOST_PIECES_AFTER = 240_000
 def after_whole_edits(numeric: NumericFilter, changes: Sequence[Change]) -> Iterator[Candidate]:
     """Yield repairs that each undo two faults of the claim.
 
-    The first change is one of ``changes`` and undoes a fault in ``WHOLE``, such as a wrong sign of a whole side. The
-    second undoes any other fault; both may change the same side.
+    The first change is one of ``changes`` and undoes a fault of a whole side or definition, such as a wrong sign before
+    a side. ``FAULTS_OF_WHOLE_SIDES`` has the codes of these faults. The second change undoes any other fault; both may
+    change the same side.
     """
-    for first in islice((change for change in changes if change.edit.code in WHOLE), MOST_WHOLE):
+    for first in islice((change for change in changes if change.edit.code in FAULTS_OF_WHOLE_SIDES), MOST_WHOLE):
         claim = numeric.edited([first])
         try:
             _ = claim.equation

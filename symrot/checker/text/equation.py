@@ -1,4 +1,8 @@
-"""The verdict on one equation of a text, with allowance for what people leave unsaid: rotations, indices, degrees."""
+"""The verdict on one equation of a text, with allowance for assumptions that the text does not state.
+
+The author may assume that R is a rotation matrix, that an angle is in degrees, that I is an inertia tensor and not the
+unit matrix, or that i and k in I_ik are indices.
+"""
 
 import re
 from dataclasses import replace
@@ -30,7 +34,7 @@ ROTATION = re.compile(r"[RCQ](_\w+)?")
 """Pattern of the names that most books use for a rotation matrix."""
 
 MASS_OR_INERTIA = re.compile(r"[mM](_?\w)?|[IJ]_\w+|rho")
-"""Pattern of the names of masses, moments of inertia and densities, as in a formula for a tensor of inertia."""
+"""Pattern of the names of masses, moments of inertia and densities; a formula for an inertia tensor has such a name."""
 
 ARRAY = re.compile(r"[A-Zpq](_?[0-9])?")
 """Pattern of the names that are often those of matrices or quaternions."""
@@ -79,9 +83,12 @@ def _with_complex_repairs(claim: Claim, verdict: Verdict) -> Verdict:
 def _on_inertia_matrix(claim: Claim, verdict: Verdict) -> Verdict:
     """Return the verdict on an equation such as ``I = -m [r]^2``, where I may be an inertia tensor or the unit matrix.
 
-    ``verdict`` is the verdict with I as the unit matrix. If one side is just the letter I, check the equation with I as
-    an inertia tensor, and return the new verdict unless it is "false" or "definition". In these two cases, return
-    "definition" if the other side is a matrix or has a mass or an inertia. In all other cases return ``verdict``.
+    ``verdict`` is the verdict with I as the unit matrix. If one side is just the letter I, the equation is checked once
+    more with I as an inertia tensor. The new verdict is returned unless it is "false" or "definition".
+
+    In these two cases the equation may still define the inertia tensor of some body. So the result is "definition" if
+    the side opposite to I is a written-out matrix, or contains a mass, a density or a moment of inertia. In all other
+    cases return ``verdict``.
     """
     sides = claim.relation[1:] if claim.relation else ()
     units = [side for side in sides if side.value == "eye"]
@@ -109,9 +116,10 @@ def _on_inertia_matrix(claim: Claim, verdict: Verdict) -> Verdict:
 def _with_two_meanings(claim: Claim, verdict: Verdict) -> Verdict:
     """Return the verdict on a claim that uses a letter for two quantities: ``L = T - V`` after a line ``I = m L^2``.
 
-    For this verdict, L is renamed to L_1 in the earlier line. Return ``verdict`` if the left side is not a letter that
-    an earlier line uses and does not define, if this letter is also on the right side or the argument of a function in
-    an earlier line, or if the claim is false with two meanings too.
+    The claim is checked with L renamed to L_1 in the earlier lines if three conditions hold. First, its left side is
+    the letter L, which does not occur on the right side. Second, earlier lines use L, but do not define it. Third, L is
+    not the argument of a function there. The result is the new verdict, with a note on both meanings, unless it is
+    "false". In all other cases return ``verdict``.
     """
     assert claim.relation is not None
     _, left, right = claim.relation
@@ -197,7 +205,7 @@ def _on_rotation_by_letter(claim: Claim, verdict: Verdict) -> Verdict:
 
 
 def _has_indices(claim: Claim) -> bool:
-    """Return whether a claim is in index notation, as ``I_ik = m*a_i*a_k`` with the indices i and k."""
+    """Return whether a claim is in index notation, such as ``I_ik = m*a_i*a_k`` with the indices i and k."""
     assert claim.relation is not None
     names = {name for side in claim.relation[1:] for name in names_in(side)}
     pairs = {name.rpartition("_")[2] for name in names if re.fullmatch(r"\w+_[ijkl]{2}", name)}

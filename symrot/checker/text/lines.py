@@ -1,4 +1,4 @@
-"""The verdict on several equations: a chain ``a = b = c``, or lines of which one may define a name for the others."""
+"""The verdict on several equations: a chain ``a = b = c``, or lines; one line may define a name for the others."""
 
 from collections.abc import Collection, Sequence
 from dataclasses import replace
@@ -150,10 +150,14 @@ def _bracketed(text: str) -> str:
 def _as_named_chain(line: Sequence[Claim], verdicts: Sequence[Verdict], notation: Notation) -> list[Verdict]:
     """Return the verdicts on the equations of a chain ``name = a = b``; the verdict on ``a = b`` may be replaced.
 
-    If ``a = b`` is no identity, and a and b each have a letter that the other one lacks, the verdict on ``name = b``
-    replaces the verdict on ``a = b``. If b is a number, and ``a = b`` is false in general but a depends on letters, as
-    in sin x = 1/2, the verdict on ``a = b`` becomes "definition". Chains that begin with no name keep their
-    ``verdicts``.
+    A chain such as ``E = I*omega^2/2 = L^2/(2*I)`` states two formulas for E, which are not equal for all values of
+    the letters. So if ``a = b`` is not an identity, and a and b each have a letter that is absent from the other, the
+    verdict on ``name = b`` replaces the verdict on ``a = b``.
+
+    A chain such as ``y = sin x = 1/2`` states the value of y for certain x. So if b is a number, and a depends on its
+    letters, a false ``a = b`` gets the verdict "definition".
+
+    Chains that do not begin with a name keep their ``verdicts``.
     """
     named = named_formula(line[0]) if len(line) > 1 else None
     if named is None or line[0].relation is None or line[0].relation[1] != named.side:

@@ -53,7 +53,7 @@ def verdict_on_text(
     Raises
     ------
     InputError
-        For text that cannot be read, with the place, and for a text of which no reading has a meaning.
+        For text that cannot be read, with the place, and for a text without a meaningful reading.
     """
     elsewhere = names_in_hypotheses(assume) if stated.meanings else set()
     if (measured := measured_text(source)) is not None:
@@ -79,7 +79,7 @@ def verdict_on_readings(
     Raises
     ------
     InputError
-        For text that cannot be read, with the place, and for a text of which no reading has a meaning.
+        For text that cannot be read, with the place, and for a text without a meaningful reading.
     """
     verdicts: list[tuple[Reading, Verdict]] = []
     refusal: InputError | None = None
@@ -131,7 +131,8 @@ def _is_false_by_context(verdict: Verdict, stated: Context) -> bool:
 def _renames_a_rate(verdict: Verdict) -> bool:
     """Return whether each known formula that the claim matches has the rate of an angle where the claim has x_prime.
 
-    An example is psi_prime in the claim for dphi in the formula: more likely, the author means ψ' as a rate.
+    For instance, ψ' is read as a name, psi_prime, and the known formula has the rate dpsi in its place. Then the author
+    probably means ψ' as the derivative of ψ, so that a reading with this derivative is more likely than this one.
     """
     return all(
         any(own.startswith("d") and other.endswith("_prime") for own, other in known.mapping.items())
@@ -140,7 +141,7 @@ def _renames_a_rate(verdict: Verdict) -> bool:
 
 
 def _is_unknown(reading: tuple[Reading, Verdict]) -> bool:
-    """Return whether the verdict on a reading is "definition": the reading is no formula that symrot derives."""
+    """Return whether the verdict on a reading is "definition": symrot does not derive the formula."""
     return reading[1].verdict == "definition"
 
 

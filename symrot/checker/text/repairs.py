@@ -59,8 +59,8 @@ def in_notation(repair: Repair, claim: Claim, notation: Notation) -> Repair:
 def as_inequality(repair: Repair, claim: Claim, sign: str, notation: Notation) -> Repair:
     """Return the repair of an inequality, in the notation of its text, from the repair of an equation.
 
-    ``claim`` is the inequality with == in place of its ``sign``, such as "<". A repair whose text is no equation is
-    returned unchanged.
+    ``claim`` is the inequality with == in place of its ``sign``, such as "<". A repair whose text is not an
+    equation is returned unchanged.
     """
     relation = relation_of(repair.text)
     if relation is None or relation[0] != "==" or claim.relation is None:
@@ -84,7 +84,8 @@ def as_typed(source: str, written: Sequence[tuple[Node, Node]]) -> str:
 def _keeps(repair: Repair, written: Sequence[tuple[Node, Node]]) -> bool:
     """Return whether a repair still contains each formula that the claim's text writes in a short form.
 
-    ``written`` has pairs (formula, short form). The answer is True if it is empty, or if the repair is no equation.
+    ``written`` has pairs (formula, short form). The answer is True if there are no pairs, or if the repair is not an
+    equation.
     """
     relation = relation_of(repair.text) if written else None
     nodes = [node for side in relation[1:] for _, node in walk(side)] if relation else []
@@ -92,10 +93,10 @@ def _keeps(repair: Repair, written: Sequence[tuple[Node, Node]]) -> bool:
 
 
 def _with_inverse(source: str, place: str, typed: str) -> str:
-    """Return the equation ``source`` with ``q**(-1)`` as its side ``place`` if this side is the inverse q*/|q|^2.
+    """Return the equation ``source`` with the side ``place`` replaced by ``q**(-1)`` if this side is q*/|q|^2.
 
-    ``place`` is "left" or "right". Return ``source`` unchanged if the side is no inverse, or if ``typed``, the claim's
-    text, does not write inverses as powers.
+    ``place`` is "left" or "right". Return ``source`` unchanged if the side is not such an inverse, or if ``typed``, the
+    claim's text, does not write inverses as powers.
     """
     relation = relation_of(source)
     if relation is None or relation[0] != "==":
@@ -119,7 +120,7 @@ def _with_plain_arrays(source: str) -> str:
 
 
 def relation_of(source: str) -> Relation | None:
-    """Parse the text of a repair as an equation; return None if it is none, such as a repair in words."""
+    """Parse the text of a repair; return None if it is not an equation or inequality, as for a repair in words."""
     try:
         return read_relation(source)
     except InputError:

@@ -1,4 +1,4 @@
-"""The verdict on a text with units: ``1500 rpm = 157.08 rad/s``, or ``F = m a = 6 N``, with letters too."""
+"""The verdict on a text with units, such as ``1500 rpm = 157.08 rad/s``, and possibly letters: ``F = m a = 6 N``."""
 
 import re
 from collections.abc import Callable, Mapping, Sequence
@@ -33,7 +33,7 @@ def verdict_on_measured(
     Raises
     ------
     InputError
-        For a text whose usual reading has no meaning, and which is not true in another reading.
+        If the usual reading of the text has no meaning, and no other reading makes the text true.
     """
     verdicts, refusal = [], None
     for words, reading in (("", measured), *measured.others):

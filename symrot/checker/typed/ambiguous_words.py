@@ -25,12 +25,15 @@ FIRST_AND_LAST = ("i", "f")
 
 
 class WordReader:
-    """A reader that divides and joins the words of a text according to their meaning: ``mgl`` into m, g and l.
+    """A reader that splits and joins the words of a text according to their meaning: ``mgl`` into m, g and l.
 
-    An ambiguous word gets its less usual meaning if its key, (kind of the ambiguity, position), is in ``flips``.
+    An ambiguous word has a usual and a less usual meaning, and a key: (kind of the ambiguity, position). It gets its
+    less usual meaning if its key is in ``flips``.
 
     Attributes
     ----------
+    flips : collection of (str, int)
+        The keys of the words that get their less usual meaning.
     notes : list of str
         Sentences about how the words are read.
     doubts : list of Doubt
@@ -44,9 +47,9 @@ class WordReader:
         self.notes, self.doubts = list[str](), list[Doubt]()
 
     def read(self, alone: Collection[str], vectors: Collection[str]) -> list[Token]:
-        """Return the tokens of the text, in which words are divided or joined as they are read.
+        """Return the tokens of the text after splitting words that mean several names and joining pieces of one name.
 
-        ``alone`` are the names that no bracket follows, so that they are no functions; ``vectors`` are the names of
+        ``alone`` are the names that no bracket follows, so that they are not functions; ``vectors`` are the names of
         vectors.
         """
         tokens = list(split_tokens(self.tokens, self.products(alone, vectors)))
@@ -56,10 +59,11 @@ class WordReader:
                 self.notes.append(f"{after.text} is read as a name, not as a unit")
         return tokens
 
-    def is_flipped(self, kind: str, start: int, excerpt: str) -> bool:
-        """Add the ambiguous text ``excerpt`` to ``doubts``; return whether ``flips`` asks for its less usual meaning.
+    def other_reading(self, kind: str, start: int, excerpt: str) -> bool:
+        """Add the ambiguous text ``excerpt`` to ``doubts``; return whether it gets its less usual meaning.
 
-        ``kind`` is the kind of the ambiguity, and ``start`` the position of the text.
+        ``kind`` is the kind of the ambiguity, and ``start`` the position of ``excerpt`` in the text. The less usual
+        meaning is chosen if the reader's attribute ``flips`` contains the key (kind, start).
         """
         self.doubts.append(Doubt((kind, start), excerpt))
         return (kind, start) in self.flips
@@ -82,7 +86,7 @@ class WordReader:
                 continue
             if (power := lost_power(word)) and self.is_spaced_after(word):
                 words[word] = power
-                if self.is_flipped("power of function", start, word):
+                if self.other_reading("power of function", start, word):
                     words[word] = (power[0], power[2])
                 else:
                     read = f"{word} before a blank is read as {power[0]}^{power[2]}"
@@ -95,7 +99,7 @@ class WordReader:
             if self.declared.symbols and all(piece in self.declared.symbols or piece.isdigit() for piece in pieces):
                 words[word] = pieces  # the claim says which names it has
                 continue
-            if usual != self.is_flipped("word" if usual else "name", start, word):
+            if usual != self.other_reading("word" if usual else "name", start, word):
                 alone |= {piece for piece in pieces if piece in ("x", "y", "z")}
                 words[word] = pieces
                 self.notes.append(f"{word} is read as {_in_words(pieces)}, not as one name")
@@ -134,7 +138,7 @@ class WordReader:
         usual = both and not alone & {"c", "s", "C", "S"}
         first, last = tokens[short[0].place], tokens[short[0].place + short[0].length - 1]
         excerpt = self.source[first.start : last.end]
-        if usual == self.is_flipped("shorthand", first.start, excerpt):
+        if usual == self.other_reading("shorthand", first.start, excerpt):
             return tokens
         for form in reversed(short):
             own = tokens[form.place : form.place + form.length]
@@ -147,9 +151,9 @@ class WordReader:
     def with_indices(self, tokens: list[Token]) -> list[Token]:
         """Return tokens in which a Greek letter and an index after it, such as ω and p of ``ωp``, are one name omega_p.
 
-        They are joined if ``ωp`` is the whole left side of an equation; also ``ωi`` and ``ωf`` anywhere, if both occur
-        (initial and final value). The less usual meaning is the product ω p: a letter and an index whose key is in
-        ``flips`` are not joined.
+        The letter and the index are joined in two cases: ``ωp`` is the whole left side of an equation, or the text has
+        both ``ωi`` and ``ωf``, an initial and a final value. The less usual meaning is the product of ω and p, without
+        joining; the attribute ``flips`` can ask for it (see `other_reading`).
         """
         padded = [None, *tokens]
         for place in range(len(tokens) - 3, -1, -1):
@@ -160,13 +164,13 @@ class WordReader:
                 whole = True
             if not greek or not whole or not second.tight or len(second.text) > 1 or first.text == "pi":
                 continue
-            if not self.is_flipped("index", first.start, self.source[first.start : second.end]):
+            if not self.other_reading("index", first.start, self.source[first.start : second.end]):
                 merged = first._replace(text=f"{first.text}_{second.text}", end=second.end)
                 tokens[place : place + 2] = [merged]
         return tokens
 
     def has_first_and_last(self, letter: str) -> bool:
-        """Return whether the text has the initial and the final value of ``letter``, as ``ωi`` and ``ωf`` for ω."""
+        """Return whether the text has an initial and a final value of ``letter``: ``ωi`` and ``ωf`` for ω."""
         pairs = list(pairwise(self.tokens))
         after = {second.text for first, second in pairs if first.text == letter and second.tight}
         alone = {second.text for first, second in pairs if not second.tight or first.kind != "name"}

@@ -1,8 +1,8 @@
 """Normalising a copied text, so that the readers of claims understand it.
 
-Commas in thousands are left out; ≈ before a rounded value becomes =; factorials are computed; and braces used as
-brackets become brackets. In LaTeX, raised digits and fractions become commands, and definitions after "where" are moved
-to the front.
+Commas that separate thousands are removed: ``1,500`` becomes ``1500``. The sign ≈ before a rounded value becomes =.
+Factorials are computed. Braces used as brackets become brackets. In LaTeX, superscript digits such as ² and fractions
+such as ½ become commands, and definitions after "where" move to the front.
 """
 
 import re

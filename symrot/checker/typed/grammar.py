@@ -20,8 +20,10 @@ __all__ = ["Parser"]
 QUATERNION_SIGNS = ("⊗", "∘")
 TIMES = ("*", "/", "·", "×")
 BROKEN_EXPONENTS = frozenset([*(("1", n) for n in "23456789"), *((n, "2") for n in "13579"), ("2", "3"), ("4", "3")])
-"""Pairs of numbers that may be a fraction as exponent: ("3", "2"), since ``x^3/2`` may mean x^(3/2). The pair ("2",
-"5") is none of them: ``r^2/5`` is always (r^2)/5."""
+"""Pairs of numbers that may be a fraction as exponent: ("3", "2"), since ``x^3/2`` may mean x^(3/2).
+
+The pair ("2", "5") is not one of them: ``r^2/5`` is always (r^2)/5.
+"""
 
 
 def _is_matrix_name(node: Node) -> bool:
@@ -185,7 +187,7 @@ class Parser(PiecesPart):
     def dotted(self, factors: list[Node]) -> None:
         """Parse a dot after a vector a, and the factor b after it; put ``dot(a, b)`` in place of a in ``factors``.
 
-        If b is no vector, append it to ``factors``.
+        If b is not a vector, append it to ``factors``.
         """
         self.plain = True
         self.next()

@@ -201,7 +201,12 @@ class OpenFunctionsPart(Cursor):
         return self.derivative_by(token, name, by, order, place)
 
     def differentiated_name(self, token: Token) -> tuple[str, int, int]:
-        """Return (name, order, next place): x and 1 for the token dx, x and 2 for ``d²x``, "" and 2 for ``d²/``."""
+        """Return (name, order, next place) for the part of a derivative above the slash, which starts with ``token``.
+
+        The next place is the place of the first token after this part, counted from 0 at the cursor; the cursor is
+        directly after ``token``. For ``dx/dt`` the result is ("x", 1, 0), for ``d²x/dt²`` ("x", 2, 2), and for
+        ``d²/dt² x`` ("", 2, 1). Raise InputError for ``dx²/dt²``, which may be meant as ``d²x/dt²`` or as a square.
+        """
         order, place = self.order_at(0)
         if token.text != "d":
             if order > 1 and self.token(place).text == "/" and self.differential(place + 1)[0]:
@@ -212,9 +217,10 @@ class OpenFunctionsPart(Cursor):
         return (own.text, order, place + 1) if is_differentiated else ("", order, place)
 
     def derived(self, token: Token, operand: Node, variable: Node, order: int) -> Node:
-        """Return the derivative of ``operand`` by ``variable``; ``token`` is the first token of the typed derivative.
+        """Return the derivative of ``operand`` with respect to ``variable``, of the given order.
 
-        Raise InputError for an order below 1 or above ``MOST_DERIVATIVES``.
+        ``token`` is the first token of the typed derivative. Raise InputError for an order below 1 or above
+        ``MOST_DERIVATIVES``.
         """
         if not 1 <= order <= MOST_DERIVATIVES:
             raise self.fail(f"a derivative of order 1 to {MOST_DERIVATIVES}", token.start)
@@ -222,11 +228,11 @@ class OpenFunctionsPart(Cursor):
         return replace(differentiated(operand, variable, order), span=self.span(token.start))
 
     def derivative_by_time(self, token: Token, name: str, order: int, length: int) -> Node | None:
-        """Return the derivative by t of the function ``name``, or of the factor after ``d/dt`` if ``name`` is empty.
+        """Return the time derivative of the function ``name``, or of the factor after ``d/dt`` if ``name`` is empty.
 
         ``token`` is the first token of ``dx/dt`` or ``d/dt``, and ``length`` the number of its further tokens. Return
-        None if the name is t, pi or a declared symbol, and for ``dx/dt`` in SymPy syntax, where it is a quotient of two
-        names.
+        None if the name is t, pi or a declared symbol. Also return None for ``dx/dt`` and ``d**2/dt**2`` if the parser
+        reads SymPy syntax (``as_sympy``), where they are quotients of names and powers.
         """
         is_quotient = self.as_sympy and (token.text != "d" if name else order > 1)
         if is_quotient or name in ("t", "pi") or name in self.vocabulary.symbols:
@@ -240,10 +246,11 @@ class OpenFunctionsPart(Cursor):
         return self.derived(token, operand, TIME, order)
 
     def derivative_by(self, token: Token, name: str, variable: Node, order: int, length: int) -> Node | None:
-        """Return the derivative of ``name``, or of the factor after ``d/dx`` if ``name`` is empty, by ``variable``.
+        """Return the derivative of ``name``, or of the factor after ``d/dx`` if ``name`` is empty.
 
-        The variable is a symbol x or a rate x'. ``token`` is the first token of ``dy/dx`` or ``d/dx``, and ``length``
-        the number of its further tokens. Return None if ``name`` is empty and no name, bracket, bar or root follows.
+        It is the derivative with respect to ``variable``, a symbol x or a rate x'. ``token`` is the first token of
+        ``dy/dx`` or ``d/dx``, and ``length`` the number of its further tokens. Return None if ``name`` is empty and no
+        name, bracket, bar or root follows.
         """
         after = self.token(length)
         if not name and not (after.text in ("(", "|", "√") or after.kind == "name"):

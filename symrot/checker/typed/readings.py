@@ -1,4 +1,4 @@
-"""Readings: the interpretations of a text that a person typed, of which some have several, as ``1/2m`` has.
+"""Readings: the interpretations of a text that a person typed. An ambiguous text such as ``1/2m`` has several.
 
 Each ambiguous piece of a text has a key (kind, position); ``flips`` are the keys of the pieces with their less usual
 meaning.

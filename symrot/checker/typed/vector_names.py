@@ -20,7 +20,7 @@ SCALARS = ("m", "I", "J", "t")
 
 
 def names_alone(tokens: Sequence[Token], vectors: Collection[str]) -> Iterator[str]:
-    """Yield the names in a text that no bracket follows, so that they are no functions."""
+    """Yield the names in a text that no bracket follows, so that they are not functions."""
     padded = [*tokens, tokens[-1]]
     for before, token, after, last in zip((None, *tokens), tokens, tokens[1:], padded[2:], strict=False):
         own = last if is_mass_before_vector(after, last) else after
@@ -105,7 +105,8 @@ def marked(tokens: Sequence[Token]) -> Iterator[str]:
 def dotted(tokens: Sequence[Token], vectors: Collection[str]) -> set[str]:
     """Return further names of vectors, found in scalar products: v in ``n·v`` if n is in ``vectors``; c in ``(a×b)·c``.
 
-    Only letters that books usually give to vectors, and g, are returned, but none in ``SHARED``.
+    Only letters that books usually give to vectors, and g, are returned. The letters in ``SHARED``, such as R and T,
+    are left out, since books give them to numbers just as often.
     """
     names: set[str] = set()
     for place, dot in enumerate(tokens):
@@ -121,7 +122,11 @@ def dotted(tokens: Sequence[Token], vectors: Collection[str]) -> set[str]:
 
 
 def _by_angle(tokens: Sequence[Token]) -> Iterator[str]:
-    """Yield F and d for ``F·d = F d cos θ``: a scalar product that equals the product of both lengths."""
+    """Yield the names that an equation such as ``F·d = F d cos θ`` shows to be vectors: F and d.
+
+    One side is the scalar product, the other the product of both lengths and the cosine. Without the cosine, as in
+    ``F·d = F d``, the names are yielded only if books usually give these letters to vectors.
+    """
     sides: list[list[str]] = [[]]
     for token in tokens:
         if token.text in ("=", "=="):

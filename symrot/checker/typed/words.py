@@ -69,7 +69,7 @@ UNITS = ("rpm", "deg", "rad", "kg", "mm", "cm", "km", "Hz", "ms", "rev", "min")
 ENGLISH = frozenset(
     ["and", "or", "if", "for", "where", "then", "with", "when", "mod", "is", "are", "so", "but", "not", "of", "the"]
 )
-"""Words between formulas, which are no factors."""
+"""Words between formulas, which are not read as factors."""
 
 SCALARS = frozenset("bckmn")
 """First letters of words of two letters that are usually products with x, y or z, such as ``kx``."""
@@ -89,7 +89,7 @@ _OF_CENTRE = re.compile("[A-Za-z](cm|CM|com|COM|cg|CG)", re.ASCII)
 """Pattern of the name of a quantity of the centre of mass or of gravity, such as ``vcm``."""
 
 WORDS_WITH_I = ("if", "in", "is")
-"""English words of two letters that start with i: they are no products of i and a letter."""
+"""English words of two letters that start with i; they are not read as products of i and a letter."""
 
 
 def pieces_of_word(word: str, alone: Collection[str]) -> tuple[tuple[str, ...], bool]:
@@ -171,9 +171,9 @@ class Shorthand(NamedTuple):
 
 
 FEWEST_OF_LETTERS = 2
-"""Number of angles that must occur in both a cosine and a sine, as in ``ca`` and ``sa``, in a text with short forms.
+"""In a text, ``ca`` is read as cos(alpha) only if at least this many angles have both a cosine and a sine.
 
-In a text with fewer of these angles, ``ca`` is probably c times a.
+Such an angle is alpha in a text with ``ca`` and ``sa``. With fewer of these angles, ``ca`` is probably c times a.
 """
 
 ANGLES = {"a": "alpha", "b": "beta", "g": "gamma", "t": "theta", "p": "phi", "x": "x", "y": "y", "z": "z"}
@@ -186,7 +186,8 @@ OF_LETTERS = re.compile(f"[cs][{''.join(ANGLES)}]")
 def shorthands_of_letters(tokens: Sequence[Token]) -> list[Shorthand]:
     """Return the short forms among ``tokens``: ``ca`` for cos(alpha) and ``sb`` for sin(beta).
 
-    Return only those of angles with both a cosine and a sine in the text; none if it has fewer than two such angles.
+    Return only short forms for angles that have both a cosine and a sine in the text. Return an empty list if there are
+    fewer than two such angles.
     """
     places = [place for place, token in enumerate(tokens) if token.kind == "name" and OF_LETTERS.fullmatch(token.text)]
     forms = {tokens[place].text for place in places}

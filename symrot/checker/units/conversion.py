@@ -75,7 +75,7 @@ CERTAIN = frozenset({
 
 _UNIT = "|".join(sorted([*FACTORS, *ALIASES], key=lambda name: (-len(name), name)))
 _POWER = r"(?:(?:\^|\*\*)(?:\(-?\d{1,2}\)|-?\d{1,2}(?!\d))|[²³]|⁻[¹²³]|(?!\s*(?:\^|\*\*)))"
-"""Pattern of the power of a unit, of at most two digits; a name with another power, such as m^x, is no unit."""
+"""Pattern of the power of a unit, of at most two digits; a name with another power, such as m^x, is not a unit."""
 
 _NO_LETTER = r"(?!(?![²³⁻¹])\w|[('])"
 _ONE = rf"(?:{_UNIT}){_NO_LETTER}{_POWER}"
@@ -144,7 +144,10 @@ class UnitProduct:
         return f"1 {self.text} = {factor}{f'/{below}' if below != 1 else ''} {unit}".rstrip()
 
     def _is_angle(self) -> bool:
-        """Return whether the first unit, to the power 1, and no further unit has an angle in it: deg, deg/s, rpm."""
+        """Return whether the first unit contains an angle and has the power 1, and no other unit contains an angle.
+
+        This holds for deg, deg/s and rpm.
+        """
         first, *others = _PIECE.finditer(self.text)
         angular = [ALIASES.get(piece["unit"], piece["unit"]) in ANGULAR for piece in (first, *others)]
         return angular[0] and not first["power"] and not any(angular[1:])
@@ -185,8 +188,9 @@ def measured_text(source: str) -> Measured | None:
     """Return a text with a name such as unit_1 in place of each unit or product of units.
 
     Return None if the text has no units, if it has names besides units (one name as the left side is allowed), or if
-    its one-letter units are probably quantities, as m and g in ``T = 2 m g``. Return None also for a formula whose only
-    units are degrees inside it, and for LaTeX commands that plain signs cannot replace.
+    its one-letter units are probably quantities, such as m and g in ``T = 2 m g``. Return None, too, if all units are
+    degree signs inside formulas, as in ``sin(30°) = 1/2``, and if the text has LaTeX commands without a replacement in
+    plain signs.
 
     Raises
     ------
@@ -264,14 +268,14 @@ def _read(plain: str, way: _Interpretation) -> Measured | None:
 
     text = _MEASURED.sub(named, plain)
     typed = {match["unit"] for one in matches for match in _PIECE.finditer(one[3])}
-    has_long = any((len(name) > 1 or name in "°%") and name not in PRODUCTS for name in typed)
+    has_long_unit = any((len(name) > 1 or name in "°%") and name not in PRODUCTS for name in typed)
     if typed == {"°"} and not re.search(rf"(^|=)\s*-?{_NUMBER}\s*°\s*($|=)", plain):
         return None  # an angle in degrees inside of a formula
     names = [name for name in _OTHER_NAME.findall(text) if name not in _FUNCTIONS and name not in units]
     names = [name for name in names if name not in _SUPERSCRIPTS]
-    if not units or (are_factors and not has_long) or not _only_units(text, names, units, has_long):
+    if not units or (are_factors and not has_long_unit) or not _only_units(text, names, units, has_long_unit):
         return None
-    return Measured(plain, text, units, has_long or not names)
+    return Measured(plain, text, units, has_long_unit or not names)
 
 
 def numeric_end(source: str) -> tuple[str, str]:
@@ -323,17 +327,22 @@ def unit_beside_letters(source: str) -> str:
     return ""
 
 
-def _only_units(text: str, names: Sequence[str], units: Mapping[str, UnitProduct], has_long: bool) -> bool:
-    """Return whether a text is a conversion such as ``1 hp = 745.7 W``: numbers with units, and at most one name."""
+def _only_units(text: str, names: Sequence[str], units: Mapping[str, UnitProduct], has_long_unit: bool) -> bool:
+    """Return whether a text such as ``1 hp = 745.7 W`` has only numbers with units; its left side may be one name.
+
+    In ``text``, names such as unit_1 stand for the ``units``. ``names`` are all its other names. ``has_long_unit``
+    tells whether the author typed °, % or a unit with several letters, such as rpm, so that the text surely has units.
+    Without such a unit, return False if the one-letter units are probably quantities: m and g in ``2 m g``.
+    """
     left = re.match(r"\s*([^\W\d_]\w*)\s*==?", text)
     if names and (left is None or names != [left[1]]):
         return False
     if names:  # such as T in T = 2 N m; the letters N and m may be quantities, but rpm is surely a unit
-        return has_long or all(_is_plausible(unit) for unit in units.values())
-    if not has_long and any(re.match(r"m[ *·⋅]?g\b", unit.text) for unit in units.values()):
+        return has_long_unit or all(_is_plausible(unit) for unit in units.values())
+    if not has_long_unit and any(re.match(r"m[ *·⋅]?g\b", unit.text) for unit in units.values()):
         return False  # the weight m g
     sides = re.split(r"==?", text)
-    return has_long or (len(sides) > 1 and all("unit_" in side for side in sides))
+    return has_long_unit or (len(sides) > 1 and all("unit_" in side for side in sides))
 
 
 def _is_plausible(unit: UnitProduct) -> bool:

@@ -61,7 +61,7 @@ def _dot(inference: UnitInference, node: Node) -> Value:
 
 
 def _vee(inference: UnitInference, node: Node) -> Value:
-    """Return the dimensions of the vector of a skew matrix; require that opposite entries have the same one."""
+    """Return the dimensions of the vector of a skew matrix; require equal dimensions of opposite entries."""
     rows = inference.matrix(node.args[0])
     if shape_of(rows) != (3, 3):
         raise Unreadable

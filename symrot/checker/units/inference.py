@@ -209,8 +209,9 @@ class UnitInference:
         )
 
     def plain(self, value: Value, words: str) -> Dimension:
-        """Return the dimension of a pure number; if ``value`` has a unit, add the sentence ``words`` to the faults.
+        """Require a scalar to be a pure number, and return the dimension of pure numbers.
 
+        ``value`` is the dimension of the scalar. If the scalar has a unit, add the sentence ``words`` to the faults.
         Raise Unreadable for a matrix.
         """
         if isinstance(value, tuple):

@@ -85,7 +85,7 @@ def lane_definitions(program: Program, edges: Sequence[int], scales: Sequence[fl
 
 
 def multiplications(program: Program, order: int) -> int:
-    """Return about the number of multiplications in the convolutions of one Taylor step of one trajectory."""
+    """Return the approximate number of multiplications in the convolutions of one Taylor step of one trajectory."""
     # a measure of the time of a step
     jet = _Jet(recurrences(program))
     shares = [(0.5 if slot.square else 1.0) * len(slot.terms) for slot in jet.slots]

@@ -1,6 +1,6 @@
 """Results of a motion with events: times of the events, states at these times, and samples up to a terminal event.
 
-A *side* of a motion is the interval before or after its start.
+A *side* of a motion is the part of it after its initial time, or the part before.
 """
 
 from collections.abc import Callable, Generator, Iterator, Sequence
@@ -73,7 +73,7 @@ class EventResult(NamedTuple):
 
 
 class _Side(NamedTuple):
-    """The motion toward later or toward earlier times than its start, for the search for events."""
+    """The part of a motion after its initial time, or the part before, as the search for events needs it."""
 
     # polynomials of the states
     pieces: Generator[Piece, None, None]
@@ -169,7 +169,12 @@ def integrate_with_events(motion: Motion, times: Floats, events: Sequence[Event]
 def _searched(
     path: Path, events: Sequence[Event], p: Sequence[float], side: "_Side", start: float, end: float, accuracy: float
 ) -> tuple[SearchResult, IntegrationStopped | ZerosNotSeparated | None]:
-    """Return the events after or before a motion's start, and the error that ended the search early or None."""
+    """Return the events on one side of a motion's initial time, and the error that ended the search early or None.
+
+    The side is the part of the motion from the initial time ``start`` to the time ``end``, s, which may be later or
+    earlier. ``path`` is the compiled library of the search, ``p`` are the values of its parameters. ``accuracy`` is the
+    error of the states, relative to their sizes.
+    """
     if end == start:
         return SearchResult([], None, []), None
 
@@ -233,8 +238,10 @@ def _joined(
 
 
 def _side(motion: Motion, end: float) -> _Side:
-    """Return the motion from its start to ``end``, s, as polynomials and as a function of times."""
-    # end may lie before the start
+    """Return the part of a motion from its initial time to ``end``, s, as polynomials and as a function of times.
+
+    The time ``end`` may be earlier than the initial time.
+    """
     plan = motion.plan
     start, y0 = motion.start, np.array(plan.initial_state, dtype=np.float64)
     broken: list[PropagationError] = []

@@ -76,7 +76,11 @@ class Motion(ABC):
         return self.setup.warnings
 
     def rounding_warning(self, t: float) -> str:
-        """Return a sentence that warns of errors beyond the time t, s, a time of ``Stats.rounded_beyond``."""
+        """Return a warning that from the time t, s, on rounding errors may exceed the tolerance.
+
+        t is one of the times in ``Stats.rounded_beyond``: from it on, in the direction in which the motion is computed,
+        rounding errors may change the motion by more than the tolerance.
+        """
         if self.has_external_torque:
             return (
                 f"beyond t = {t!r} s the rounding of the times at which the torque is evaluated, to doubles that lie "

@@ -284,7 +284,10 @@ class _Integration:
 
     @property
     def work(self) -> int:
-        """Number of evaluations so far, of the rates and of their bounds together; ``max_steps`` limits this number."""
+        """Number of evaluations so far: of the rates, and of the bounds of the rates that limit the steps.
+
+        The option ``max_steps`` limits this number.
+        """
         return self.evaluations + (self.deviations.spent - self.before if self.deviations else 0)
 
     def stats(self) -> Stats:
@@ -454,7 +457,10 @@ class _Integration:
                     solver.max_step = longest
 
     def _add_rounding(self, t: float, y: Floats, length: float) -> None:
-        """Add the rounding errors of a step of ``length``, s, that begins with the states ``y`` at the time ``t``."""
+        """Add the rounding errors of one step to the sum of the rounding errors of the motion.
+
+        The step begins with the states ``y`` at the time ``t``, s, and has the length ``length``, s.
+        """
         error, drift = ROUNDED_STEP * self.size, LSODA_DRIFT * self.size if self.method == "LSODA" else 0.0
         if self.deviations:
             errors = self.deviations.rounding_errors(t, y.tolist())
@@ -462,11 +468,14 @@ class _Integration:
         self.sums[-1].add(t, error, self.size, drift)
 
     def _move_clock(self, clock: Clock, now: float) -> float:
-        """Move the epoch by ``now``, s, to the present time; return the rounding error of the new epoch, s."""
+        """Move the epoch to the present time; return the present time minus the rounded new epoch, s.
+
+        The epoch is the time from which the right-hand side counts, ``now`` the present time since the old epoch, s.
+        ``clock`` takes the new epoch and returns a right-hand side that counts from it, with its parameters.
+        """
         self.epoch, rest = two_sum(self.epoch, now)
         self.rhs, p = clock(self.epoch)
         self.p = np.array(p, dtype=np.float64)
-        # this is the present time minus the epoch, which is rounded to a double
         return float(rest)
 
     def _judge_pace(self, t: float, stop: float) -> None:

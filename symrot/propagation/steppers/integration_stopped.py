@@ -35,7 +35,10 @@ class IntegrationStopped(PropagationError):
         return IntegrationStopped, (self.t, self.reason, self.stop)
 
     def later(self, epoch: float) -> "IntegrationStopped":
-        """Return the error with its times converted to scene times, by adding ``epoch``, s; without ``recording``."""
+        """Return a copy of the error with its times converted to scene times, by adding ``epoch``, s.
+
+        The copy has no ``recording``: a recorded motion takes times since the epoch, not scene times.
+        """
         later = IntegrationStopped(self.t + epoch, self.reason, None if self.stop is None else self.stop + epoch)
         if self.samples is not None:
             later.samples = self.samples._replace(stats=self.samples.stats.later(epoch))
@@ -85,9 +88,10 @@ def why_stuck(reason: str, t: float, t0: float, stop: float) -> str:
 
 
 def why_hopeless(steps: int, way: float, left: float, limit: int) -> str:
-    """Return the sentence that a motion would need far more than ``limit`` steps at its present pace; else ``""``.
+    """Return a sentence if a motion would need far more than ``limit`` steps at its present pace, else an empty text.
 
-    The last ``steps`` steps covered ``way`` s; ``left`` s remain.
+    The sentence says how many steps the motion would need. The last ``steps`` steps covered ``way`` s; ``left`` s
+    remain. Evaluations may be counted in place of steps.
     """
     # by far: more than three times
     if steps * left <= HOPELESS * limit * way:

@@ -74,7 +74,8 @@ class SteppedPieces:
     def cost(self) -> NDArray[np.int64]:
         """Return the numbers of steps accepted, steps rejected and evaluations so far, as an array.
 
-        Also store in the run the time, if any, from which rounding errors may matter (:meth:`RunState.note_rounding`).
+        Also store in ``self.run`` the time, if any, from which rounding errors may exceed the tolerance
+        (:meth:`RunState.note_rounding`).
         """
         integration = self.integration
         self.run.note_rounding(self.zero)
@@ -161,7 +162,8 @@ class SciPyPieces:
     def cost(self) -> NDArray[np.int64]:
         """Return the numbers of steps accepted, steps rejected and evaluations so far, as an array.
 
-        Also store in the run the time, if any, from which rounding errors may matter (:meth:`RunState.note_rounding`).
+        Also store in ``self.run`` the time, if any, from which rounding errors may exceed the tolerance
+        (:meth:`RunState.note_rounding`).
         """
         self.run.note_rounding(self.zero)
         return self.counts

@@ -25,18 +25,19 @@ TEXT_KEYS = (
     "id", "body", "frame", "sequence", "source", "note", "printed", "kind", "claim", "latex", "value", "printed_value",
     "against",
 )  # fmt: skip
+"""The keys of a claim in a file whose value is a text."""
 LIST_KEYS = ("symbols", "functions", "given", "alternatives", "lost", "editable")
+"""The keys of a claim in a file whose value is a list of texts."""
 OTHER_KEYS = ("where", "define", "units")
-"""The keys of a claim in a file: the value of a key in TEXT_KEYS is a text, in LIST_KEYS a list of texts, and in
-OTHER_KEYS a value of another shape, which ``_check_key`` describes."""
+"""The keys of a claim in a file whose value has another type, such as a table; ``_check_key`` describes each."""
 
 FILE_KEYS = ("schema", "claim", "document", "title", "kind", "lost", "note")
 """The keys at the top of a file of claims; the last five describe the document from which its claims come."""
 
 MOST_CLAIMS = 2000
+"""The largest number of claims in a file."""
 MOST_NAMES = 500
-"""MOST_CLAIMS is the largest number of claims in a file, MOST_NAMES the largest number of names that one claim may
-declare or define."""
+"""The largest number of names that one claim may declare or define."""
 
 
 @dataclass(frozen=True)

@@ -73,7 +73,7 @@ def claims_of_reading(
             stated = with_sign(stated, first, sign)
             continue
         reserved = ("pi", *(["t"] if has_time else []), *(name for name, _ in define))
-        # a line that only names a formula defines this name for the lines after it
+        # a line that gives a formula for a name defines this name for the lines after it
         is_name = first.kind == "name" and chain.signs[0] == "==" and first.value not in reserved
         if is_name and not chain.both_signs and first not in nodes_of(chain.sides[1]):
             define.append((str(first.value), chain.sides[1]))

@@ -220,8 +220,11 @@ def _of_one_time(hypotheses: Sequence[Relation]) -> tuple[Relation, ...]:
 
 
 def _matrix_given(source: str, words: Collection[str]) -> tuple[str, Node] | None:
-    """Return R and its formula for a hypothesis such as ``R == R_z(psi)*R_y(theta)``; None if no matrix is defined."""
-    # ``words`` are the names of the claim, which are not split into letters
+    """Return R and its formula for a hypothesis such as ``R == R_z(psi)*R_y(theta)``; None if no matrix is defined.
+
+    ``source`` is the text of the hypothesis. ``words`` are the names of several letters in the claim; the hypothesis is
+    read with the same names, not as products of letters.
+    """
     sign, left, right = read_hypothesis(source, "given", words=words)
     is_definition = sign == "==" and left.kind == "name" and shape_of(right, {}) not in (None, (1, 1))
     return (str(left.value), right) if is_definition else None
@@ -339,9 +342,10 @@ def _on_vectors(vectors: Sequence[Vector]) -> Iterator[str]:
 
 
 def _units_of_directions(vectors: Sequence[Vector]) -> dict[str, str]:
-    """Return {"n_x": "1"}: no unit for each component of a vector n of length 1 that is no axis.
+    """Return {"n_x": "1"}, the unit 1 (dimensionless) for each component of each vector whose length is 1.
 
-    Without this, the letter of a component such as omega_x would suggest the unit of a rate.
+    Without this entry, the letter of a component would suggest a unit: rad/s for omega_x, although the vector is omega
+    with a hat, a direction. Coordinate axes such as e_x are left out: their components are the numbers 0 and 1.
     """
     return {f"{v.name}_{axis}": "1" for v in vectors if v.unit and not v.is_axis for axis in v.axes}
 

@@ -81,7 +81,11 @@ def _frames(context: Context, names: dict[Expr, str], components: dict[Expr, re.
 
 
 def _coordinates(places: dict[str, int]) -> tuple[list[Symbol], list[Symbol]]:
-    """Return symbols for the three angles of a sequence and for their rates, named by the claim's letters."""
+    """Return symbols for the three angles of a sequence and for their rates, with the claim's letters as names.
+
+    ``places`` maps each letter of the claim to the position of its angle in the sequence, 0, 1 or 2. An angle without a
+    letter gets a name such as q_1.
+    """
     names = {place: name for name, place in places.items()}
     # angles without a letter in the claim
     unused = iter(name for name in ("q_1", "q_2", "q_3") if name not in places)

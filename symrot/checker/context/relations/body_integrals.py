@@ -71,8 +71,10 @@ def is_tensor_of_integrals(sides: Sequence[Any]) -> bool:
 
 
 def _entry(row: int, column: int) -> Expr:
-    """Return an entry of the inertia tensor as a sum of integrals: ``integral_yy + integral_zz`` for row 0, column
-    0.
+    """Return an entry of the inertia tensor as a sum of integrals over the body.
+
+    For row 0 and column 0 the sum is ``integral_yy + integral_zz``, where the symbol integral_yy stands for the
+    integral of y^2 dm.
     """
     terms = Poly(inertia_of_point(1, position)[row][column], *position).terms()
     return Add(*(factor * Symbol(f"integral_{_product(powers)}", real=True) for powers, factor in terms))

@@ -56,7 +56,7 @@ class Substitution:
 
     @property
     def identification(self) -> Identification:
-        """The relation called ``name`` as an Identification, such as a verdict lists in ``recognised_as``."""
+        """The relation called ``name`` as an Identification, the type of the entries of ``Verdict.recognised_as``."""
         return Identification(self.name, "", self.mapping, self.source)
 
 
@@ -86,9 +86,10 @@ def _sides(equation: Equation, substitution: Substitution) -> tuple[Any, Any]:
 def by_substitution(
     claim: Claim, verdict: Verdict, substitutions: Iterable[Substitution], is_complete: bool
 ) -> Verdict:
-    """Return the verdict on a claim after each of ``substitutions``; ``verdict`` if the substitutions decide nothing.
+    """Return the verdict on a claim that follows from ``substitutions``, the possible meanings of its letters.
 
-    If ``is_complete``, the substitutions are all interpretations of the claim; then the verdict may be "false".
+    The claim is decided after each substitution. It may be "false" only if ``is_complete``, that is, if its letters
+    have no other possible meanings. Return ``verdict`` if the substitutions decide nothing.
     """
     if not is_complete and verdict.verdict not in OPEN:
         return verdict
@@ -116,8 +117,8 @@ def by_substitution(
 def _recognised(context: Context, verdict: Verdict, true: Sequence[Substitution], is_complete: bool) -> Verdict:
     """Return the verdict "true" or "recognised" on a claim that holds under the interpretations ``true``.
 
-    It is "true" if the claim has a context, one of ``true`` guesses nothing that neither claim nor context states, and
-    all interpretations of the claim were tried (``is_complete``).
+    It is "true" if the claim has a context, one of ``true`` guesses nothing beyond what the claim and its context
+    state, and all interpretations of the claim were tried (``is_complete``).
     """
     stated = [way for way in true if not way.guess]
     readings = tuple(way.identification for way in (stated or true)[:MOST_READINGS])

@@ -1,7 +1,8 @@
 """Claims about a symmetric top that mix spin, momenta and rates: ``p_phi = I_1 phi' sin^2 theta + I_3 s cos theta``.
 
 Momenta, spin and energies are formulas in the independent quantities: angles, their rates, moments and weight. Books
-use n and s both for the spin along the axis and for the rate of the spin angle: either is tried.
+use n and s in two meanings: the spin omega_3 = psi' + phi' cos theta, which is the component of the angular velocity
+along the axis, and the rate psi' of the spin angle. Both meanings are tried.
 """
 
 import re
@@ -104,10 +105,10 @@ def _is_fitting(names: Mapping[Expr, str], values: Mapping[Expr, Expr], own: Seq
 
 
 def _choices(context: Context, name: str, formulas: Mapping[str, Expr], load: Expr) -> Iterator[tuple[str, Expr]]:
-    """Yield pairs (title, formula) for each quantity of a top that the letter ``name`` can mean.
+    """Yield a pair (title, formula) for each quantity of a top that the letter ``name`` can mean.
 
-    The title of s is "spin along the axis", that of a coordinate such as theta is empty. ``formulas`` maps titles to
-    formulas; ``load`` is the weight of the top, m*g or W.
+    For the letter s, one pair has the title "spin along the axis". The title is empty for a symbol of COORDINATES, such
+    as the angle theta. ``formulas`` maps titles to formulas; ``load`` is the weight of the top, m*g or W.
     """
     meaning = context.meaning_of(name)
     pattern = meaning.quantity.symbols if meaning is not None else ""
@@ -137,7 +138,7 @@ def _formulas(load: Expr) -> dict[str, Expr]:
     omega = (Matrix(rate_jacobian("ZXZ")) * Matrix(symbols.angle_rates)).subs(symbols.psi, 0)
     kinetic = expand(omega.dot(diag(A, A, C) * omega) / 2)
     potential = load * ARM * cos(THETA)
-    # the momenta are derivatives of the kinetic energy by the rates
+    # the momenta are derivatives of the kinetic energy with respect to the rates
     precession, nutation, spin = (kinetic.diff(rate) for rate in symbols.angle_rates)
     energy_of_spin = spin**2 / (2 * C)
     effective = kinetic + potential - nutation**2 / (2 * A)

@@ -165,11 +165,11 @@ class Conditions:
         }
 
     def _simpler(self, entry: tuple[Mapping[Expr, int], int, str]) -> tuple[Mapping[Expr, int], int, str] | None:
-        """Return a condition on a product without factors of known sign; None if the condition is no longer needed.
+        """Return the condition ``entry`` on a product without its factors of known sign, or None if it is not needed.
 
-        The condition ``entry`` is a triple (powers of the factors, direction, sign): ({x: 1, y: 1}, -1, ">= 0") means
-        -x*y >= 0. Return None for a condition that always holds. A condition on one quantity, such as
-        ``2*x - pi >= 0``, is stored in ``self.ranges`` as x >= pi/2; return None then too.
+        The condition is a triple (powers of the factors, direction, sign): ({x: 1, y: 1}, -1, ">= 0") means -x*y >= 0.
+        It is not needed in two cases. It always holds; or it bounds a single quantity, as ``2*x - pi >= 0`` does, and
+        the method has narrowed the range of this quantity in ``self.ranges``, here to x >= pi/2.
         """
         factors, direction, sign = entry
         bounds = {factor: bound_of(factor) for factor in factors}
@@ -208,10 +208,11 @@ class Conditions:
         return Range(Integer(0)) if surely_nonnegative(quantity) else Range()
 
     def _between(self, bounds: Mapping[Expr, Bound], direction: int, sign: str) -> bool:
-        """Narrow the range of q to [a, b] and return True for a condition ``(q - a)*(b - q) >= 0``; otherwise return
-        False.
+        """Narrow the range of q to [a, b] if a condition is ``(q - a)*(b - q) >= 0``; return whether it is.
+
+        The condition says that ``direction`` (1 or -1) times a product has the ``sign`` ">= 0" or "> 0"; for "> 0", the
+        ends a and b are excluded. ``bounds`` maps each factor of the product to its Bound, ``slope*(q - root)``.
         """
-        # each factor is slope*(q - root), and ``direction`` is the factor 1 or -1 of the product
         first, second, *more = sorted(bounds.values(), key=lambda bound: bound.root.evalf())
         if more or direction * first.slope * second.slope > 0:
             return False
@@ -221,10 +222,10 @@ class Conditions:
         return True
 
     def _excludes(self, formula: Expr) -> bool:
-        """Return whether the condition ``formula != 0`` follows from ``self.ranges`` and ``self.products``.
+        """Return whether ``self.ranges`` and ``self.products`` state the known condition ``formula != 0`` too.
 
-        If the formula is zero at an end of a range, remove this end from the range first: for the formula x, ``x >= 0``
-        becomes ``x > 0``.
+        If the formula is zero at an end of a range, the method removes this end and returns True: for the formula x,
+        the range ``x >= 0`` becomes ``x > 0``, which states x != 0.
         """
         bound = bound_of(formula)
         if bound.root == 0 and isinstance(bound.quantity, sin | cos) and self._angle_excludes(bound.quantity):

@@ -76,7 +76,10 @@ def _rods_and_masses() -> Iterator[Named]:
 
 
 def _theorems() -> Iterator[Named]:
-    """Yield the parallel-axis theorem, by components and for radii of gyration, and the theorem of flat bodies."""
+    """Yield the parallel-axis theorem and the perpendicular-axis theorem.
+
+    The parallel-axis theorem is stated for moments of inertia, for products of inertia and for radii of gyration.
+    """
     offset = symbols.offset
     added = Matrix(tensor.inertia_of_point(symbols.m, offset))
     (xx, yy, zz), (xy, xz, yz) = symbols.moments, symbols.products

@@ -48,7 +48,7 @@ def without_common_powers(difference: Expr) -> Expr:
 def _common_powers(formula: Expr) -> dict[Expr, int] | None:
     """Return the powers of symbols and functions that divide all terms of a formula: {a: 1, b: -1} for ``a*c/b + a/b``.
 
-    None if the formula contains a power whose exponent is no integer, such as a root, or a sum as a divisor.
+    Return None if an exponent in the formula is not an integer, as in a root, or if the formula divides by a sum.
     """
     if isinstance(formula, Add):
         terms = [_common_powers(term) for term in formula.args]

@@ -35,10 +35,10 @@ UNIT, PARAMETERS, RELATIVE, COMPOSITION, RODRIGUES, MOMENTUM, ENERGY, POWER, WHE
 PITCH = "pitch angle of a rotation matrix, asin"
 SECOND_ANGLE_OF_MATRIX = "second angle of ZXZ, and of ZYZ, of a rotation matrix, acos"
 OF_ONE_ENTRY = (PITCH, SECOND_ANGLE_OF_MATRIX)
-"""Names of the formulas for angles that follow from one entry of a rotation matrix, as acos(R_33), second angle of ZXZ.
+"""Names of the formulas that give an angle by one entry of a rotation matrix, such as acos(R_33).
 
-The stored formula is this entry alone, so that every claim ``angle = acos(letter)`` would match. A claim is recognised
-only if the letter has the name of a matrix entry, such as R_33.
+Symrot stores only the entry, here R_33 for the second angle of ZXZ, so that every claim ``angle = acos(letter)`` would
+match. A claim is recognised only if the letter has the name of a matrix entry, such as R_33.
 """
 
 GYROSCOPE = "torque on a gyroscope whose axis precesses"

@@ -88,8 +88,10 @@ def _top() -> tuple[Matrix, Expr]:
 def _steady() -> Iterator[Relation]:
     """Yield relations for the steady precession of tops and wheels.
 
-    These are the conditions for steady precession under a weight or a torque, in omega_3 and in psi', and relations for
-    the least spin, the torque of gravity, and the frequency of fast nutation.
+    The condition for steady precession, under a weight or under a torque, has two forms: one with the spin omega_3, the
+    other with the rate psi' of the spin angle. Further relations state the smallest spin at which a top can precess
+    steadily, the smallest spin at which an upright (sleeping) top is stable, the slow precession of a fast top, the
+    torque of gravity, the gyroscopic torque of a wheel with a level axle, and the frequency of fast nutation.
     """
     _, kinetic = _top()
     along = kinetic.diff(THETA).subs(DTHETA, 0)  # A*theta'' at rest in theta, by Lagrange's equation

@@ -1,7 +1,9 @@
 """Whether a claim's formula is a known formula with a fault, or may be right: only evident faults are reported.
 
-A claim gives a formula for a quantity (``named``); ``near`` is a known formula that differs from it by one fault. The
-evidence is the number of letters, the unit, the names, and the context, which a user states besides the claim.
+A claim gives a formula for a quantity: ``named`` is this quantity with its formula. ``near`` is a possible correction
+of the formula: one change turns the formula into ``near.tree``, which has the values of the known formula
+``near.known``. The evidence is the number of letters, the unit, the names, and the context, which a user states besides
+the claim.
 """
 
 import re
@@ -24,20 +26,30 @@ With fewer quantities, an edited formula, such as one with another sign, may equ
 """
 
 MANY_LETTERS = 5
-"""The smallest number of letters in a formula that is usually reported as faulty although its quantity's name has no
-usual meaning. One change turns such a formula into a known one. With fewer letters, it may be right for something else.
+"""A formula one change away from a known one needs this many letters if the name of its quantity has no usual meaning.
+
+With fewer letters, the formula is usually not reported as faulty, since it may be correct for something else.
 """
 
 MANY_OCCURRENCES = 4
-"""A claim's matrix that one change turns into a known matrix is reported as faulty if it has at least this many
-letters. A letter counts as often as it occurs. With fewer letters, the matrix may be right for something else.
+"""A written-out matrix one change away from a known matrix counts as faulty if it has at least this many letters.
+
+A letter counts as often as it occurs. A matrix with fewer letters may be correct for something else, so that further
+tests decide whether it is reported.
 """
 
 SAFE_BY_UNIT = ("exponent", "factor", "wrong_symbol", "extra_term", "missing_term")
-"""Codes of faults that are usually reported if the claim's formula has another unit than the known formula."""
+"""Codes of faults that are usually reported if the claim's formula and the known formula have different units.
+
+The name of the claimed quantity must have a usual meaning, such as I_zz.
+"""
 
 SURE_IF_STATED = ("sin_cos_swap", "half_angle", "double_half_angle", "exponent")
-"""Codes of faults that are usually reported if the context states what the letters of the formula mean."""
+"""Codes of faults that are reported, however short the formula is, if the context states what its letters mean.
+
+An earlier test of `is_evident` can rule the fault out, for example if the claim has a letter that the known formula
+lacks.
+"""
 
 
 def says_too_little(claim: Claim, named: NamedFormula, near: Near) -> bool:
@@ -54,9 +66,10 @@ def is_of_body(code: str, known: str) -> bool:
 
 
 def is_evident(claim: Claim, named: NamedFormula, near: Near) -> bool:
-    """Return whether a formula is more likely a known one with a fault than a right formula that symrot does not know.
+    """Return whether a claim's formula is probably a known formula with an error, not a correct one unknown to symrot.
 
-    Only evident faults give the verdict "doubtful".
+    ``named`` has the claim's formula, ``near`` the possible correction of it and the known formula that results. Only
+    evident faults give the verdict "doubtful".
     """
     letters, words = names_in(named.formula), words_of(named)
     quantities = len(quantities_in(named.formula))
@@ -172,7 +185,7 @@ def _is_of_stated_body(claim: Claim, near: Near) -> bool:
 
 
 def _is_of_axis(named: NamedFormula, near: Near) -> bool:
-    """Return whether the claimed quantity's name ends with an axis, as I_x does, and the known formula has this axis.
+    """Return whether the claimed quantity's name ends with an axis, like I_x, and the known formula has this axis.
 
     The known formula is that of ``near``, with a name such as "moment of inertia of .., x axis".
     """
@@ -187,7 +200,7 @@ def _is_of_stated_flat_body(claim: Claim, near: Near) -> bool:
 
 
 def _is_component_of_quaternion(named: NamedFormula, near: Near) -> bool:
-    """Return whether a claim gives a quaternion component with a wrong angle or function, as beta_1 = e_1 sin(phi).
+    """Return whether a claim gives a quaternion component with a wrong angle or function, like beta_1 = e_1 sin(phi).
 
     ``near`` must be the known formula of this component, here e_1 sin(phi/2), and the fault a wrong angle or function.
     """

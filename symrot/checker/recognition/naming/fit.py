@@ -1,7 +1,8 @@
 """Whether a claim may mean a known formula, judged by names, units, axes and letters, and by the context.
 
-A claim gives a formula for a quantity (``named``); ``known`` is a known formula that is equal to it, with the letters
-that its symbols have in the claim. The context is what a user states besides the claim.
+Two parameters occur in most functions here. ``named`` is the quantity of a claim with the formula that the claim gives
+for it. ``known`` is a known formula equal to that formula; ``known.mapping`` maps its symbols to the claim's letters
+where their names differ. The context is what a user states besides the claim.
 """
 
 import re
@@ -65,7 +66,8 @@ PARALLEL = re.compile("parallel.ax")
 OF_ROLL = re.compile(r"d?([pqr]|[Hh](_?\w+)?)")
 """Pattern of the rates p, q, r of an aircraft and of letters of its angular momentum, such as H_x.
 
-A scalar claim ``L = ..`` may mean a known torque, the rolling moment, only if its formula has such a letter.
+L may be the name of the rolling moment of an aircraft. So a scalar claim ``L = ..`` whose formula equals that of a
+known torque is recognised as this torque only if the formula has such a letter.
 """
 
 RATES_OF_AIRCRAFT = {"p": "x1", "q": "y2", "r": "z3"}
@@ -81,10 +83,10 @@ FIRST_ANGLE, LAST_ANGLE = r"(var)?phi|alpha|\w+_1", r"psi|gamma|\w+_3"
 
 
 def has_other_length(known: str, renaming: Iterable[tuple[str, str]]) -> bool:
-    """Return whether a claim uses a letter that books never use for a length in a body's formula, as L for a radius R.
+    """Return whether a claim gives a length of a body a letter that books never use for this length: L for a radius R.
 
-    ``known`` is the name of the formula; ``renaming`` has pairs (symbol of the formula, letter of the claim). Return
-    False for formulas other than moments of inertia and radii of gyration, and for elliptical bodies.
+    ``known`` is the name of the known formula, ``renaming`` has pairs (symbol of this formula, letter of the claim).
+    Return False for formulas other than moments of inertia and radii of gyration, and for elliptical bodies.
     """
     if re.match("moment of inertia of a|radius of gyration of a", known) is None or "ellip" in known:
         return False
@@ -121,7 +123,8 @@ def fits_quantity(named: NamedFormula, known: Identification, matrix: bool) -> b
 def _is_of_other_angles(named: NamedFormula, known: Identification) -> bool:
     """Return whether a claim is about an aircraft's rate p, q or r, and the known formula contradicts this meaning.
 
-    It does if it gives the angular velocity in the space frame, or by other Euler angles than roll, pitch and yaw.
+    The known formula contradicts it by giving the angular velocity in the space frame, or by Euler angles other than
+    roll, pitch and yaw.
     """
     sequence = re.search(r"angular velocity of (\w{3}) ", known.name)
     if named.name not in RATES_OF_AIRCRAFT or sequence is None:
@@ -170,7 +173,7 @@ def keeps_places(named: NamedFormula, known: Identification) -> bool:
     letters = [*known.mapping.values()] or [*names_in(named.formula)]
     is_parallel = PARALLEL.search(known.name) is not None
     about_other = [letter for letter in letters if MOMENT.fullmatch(letter) and not CENTRE.fullmatch(letter)]
-    # the theorem of parallel axes gives the moment about a point from the one about the centre of mass
+    # the parallel-axis theorem gives the moment about a point from the one about the centre of mass
     if is_parallel and CENTRE.fullmatch(named.name) and (about_other or any(map(POINT.fullmatch, letters))):
         return False
     of_aircraft = [
@@ -208,7 +211,7 @@ def _is_reversed(name: str, known: Identification) -> bool:
 
 
 def _is_component_of_rate(named: NamedFormula) -> bool:
-    """Return whether a claim gives one component of an angular velocity by others, as omega_2 by omega_1.
+    """Return whether a claim gives one component of an angular velocity by others, such as omega_2 by omega_1.
 
     Without another component in the formula, omega_2 may mean something else, and the result is False.
     """

@@ -64,10 +64,10 @@ For instance, the name "first component of .." contradicts the quantity omega_3.
 """
 
 AS_NEAR = 0.15
-"""The extra cost that a repair may have for a claim I + m d^2 to count as a right formula about a parallel axis.
+"""Largest extra cost of the repair to I for which a claim equal to I + m d^2 is not taken for I with a fault.
 
-The claim equals a known moment of inertia I plus m d^2, which looks like I with a fault. If the repair that turns the
-claim into I costs at most this much more than the likeliest repair, no known moment of a body is offered as a repair.
+I is a known moment of inertia of a body, so that the claim may be correct for a parallel axis. If the repair to I costs
+at most this much more than the likeliest repair to a moment of inertia, none of these repairs is offered.
 """
 
 MOST_REPAIRS = 3
@@ -169,7 +169,7 @@ def _in_claim(repair: Repair, left: Node, right: Node, named: NamedFormula) -> R
 
 
 def _are_usable(claim: Claim) -> bool:
-    """Return whether all hypotheses define names, as c1 = cos(alpha), or state unit lengths, as a^2 + b^2 = 1."""
+    """Return whether all hypotheses define names, such as c1 = cos(alpha), or state unit lengths: a^2 + b^2 = 1."""
     # under A = B, a right formula may be shorter than the known one, and a term would seem to be missing
     short = claim.defining
     return all(
@@ -190,9 +190,11 @@ def _is_norm(side: Node, other: Node) -> bool:
 def formulas_nearby(claim: Claim, named: NamedFormula) -> list[Near]:
     """Return repairs of the claim's formula, each with the known formula that it gives, the likeliest first.
 
-    Each repair changes one part of the formula, a few change two signs; its ``code`` names the fault. If the formula
-    contains the root of a sum and has the values of a known formula as it stands, the list has at most one entry, with
-    the code "none".
+    Most repairs change one part of the formula, a few change two signs. The ``code`` of a repair names the fault.
+
+    A formula with the square root of a sum, such as a*sqrt(1 - x/a^2), may equal a known formula although the look-up
+    of known formulas does not find it. If such a formula has the values of a known one without a change, the list has
+    at most one entry: the unchanged formula with the code "none", for the caller to prove that both are equal.
     """
     words, plain = words_of(named), quantity_name(named)
     nearby = [

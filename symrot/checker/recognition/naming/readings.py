@@ -27,17 +27,18 @@ __all__ = [
 ]  # fmt: skip
 
 LEAST_SYMBOLS = 2
-"""The smallest number of symbols in a scalar formula of a claim that is looked up among the known formulas.
+"""The smallest number of symbols in an unedited scalar formula of a claim that is looked up among the known formulas.
 
-The formula is looked up as the author wrote it; a formula that results from an edit must have more symbols. One symbol
-suffices if the quantity's name has a usual meaning, such as I_zz.
+One symbol suffices if the quantity's name has a usual meaning, such as I_zz. For a formula that results from an edit of
+the claim, the caller sets another number.
 """
 
 LEAST_SYMBOLS_RELATED = 5
 """The smallest number of symbols in an equation that is compared with known relations (equations between quantities).
 
-An equation with fewer symbols may equal one by chance. LEAST_SYMBOLS suffice in two cases: if the context says what all
-letters mean, and for the author's own formula of a quantity whose name has no usual meaning.
+An equation with fewer symbols may equal a known relation by chance. The smaller number LEAST_SYMBOLS suffices in two
+cases: the context says what each letter means, or the claim is compared without an edit and the name of its quantity
+has no usual meaning.
 """
 
 LEAST_SYMBOLS_OF_MOTION = 3
@@ -82,11 +83,11 @@ def readings_of_claim(
     If there are none, return the known relations (equations between quantities) that the whole claim can mean. At most
     MOST_READINGS are returned.
 
-    ``least_symbols`` is the smallest number of symbols of a scalar formula that is compared with known formulas:
-    LEAST_SYMBOLS if ``tree`` is the author's own formula, another number if it is the result of an edit. As an
-    exception, one symbol suffices in the author's own formula if the quantity's name has a usual meaning.
-    `LEAST_SYMBOLS_RELATED` tells how many symbols an equation needs that is compared with relations. ``interpreter``
-    turns trees into SymPy values; by default, the claim makes it.
+    A scalar ``tree`` with fewer than ``least_symbols`` symbols is not compared with known formulas. Callers pass
+    LEAST_SYMBOLS for the formula as the claim states it; then one symbol suffices if the quantity's name has a usual
+    meaning, such as I_zz. For an edited formula, callers pass another number. An equation needs more symbols to be
+    compared with relations: see `LEAST_SYMBOLS_RELATED`. ``interpreter`` turns trees into SymPy values; by default, the
+    claim makes it.
     """
     interpreter = claim.interpreter() if interpreter is None else interpreter
     solved: tuple[Identification, ...] = ()
@@ -140,9 +141,9 @@ def readings_of_formula(
 ) -> tuple[Identification, ...]:
     """Return the likeliest known formulas for the claim's quantity that are equal to ``formula``.
 
-    Empty if ``formula`` cannot be read, or is a scalar with fewer than ``least_symbols`` symbols. If ``least_symbols``
-    is LEAST_SYMBOLS, as it is for the author's own formula, and the quantity's name has a usual meaning, such as I_zz,
-    a single symbol suffices.
+    Empty if ``formula`` cannot be read, or is a scalar with fewer than ``least_symbols`` symbols. A single symbol
+    suffices if the formula is unedited, for which callers pass LEAST_SYMBOLS, and the quantity's name has a usual
+    meaning, such as I_zz. An edited formula that short may equal a known one by chance.
     """
     try:
         value = claim.with_definitions((interpreter or claim.interpreter()).read(formula))

@@ -26,10 +26,12 @@ USUAL = {"c_3": "l", "mu": "m", "omega_3": "omega", "domega_3": "alpha"}
 
 
 def _absent_of_product(known: str, renaming: dict[str, str | None]) -> str | None:
-    """Return the name that a claim would have for a component ``known`` of q or p in a quaternion product q*p.
+    """Return the name that a claim would have for a missing component of q or p in a quaternion product q*p.
 
-    The claim lacks the component. If it writes a1, b1, c1, d1 for q and a2, b2, d2 for p, the missing component p2 (the
-    third, after p0 and p1) is c2. Return None for other symbols, and if the claim's names are of another form.
+    ``known`` is the missing component, such as "p2". ``renaming`` maps the other components q0, .., q3 and p0, .., p3
+    to the claim's names. Suppose that the claim writes a1, b1, c1, d1 for q0, .., q3 and a2, b2, d2 for p0, p1, p3.
+    Then the name of p2 is c2: it has the letter of q2 and the number of p. Return None for other symbols ``known``, and
+    if the claim's names do not consist of a letter and a number.
     """
     if re.fullmatch("[qp][0-3]", known) is None:
         return None
@@ -48,11 +50,12 @@ def _without_mark(name: str) -> tuple[str, str]:
 
 
 def _numbered_angle(known: str, beside: str, name: str) -> str:
-    """Return the name that a claim with numbered angles would have for the Euler angle ``known``, or its rate.
+    """Return the name in a claim with numbered angles for ``known``, an Euler angle or the rate of one.
 
-    ``beside`` is another Euler angle (or rate), which the claim calls ``name``: if it calls phi theta_1, it would call
-    psi theta_3. Return "" if ``name`` does not end with the number of the angle ``beside``, counted from the first or
-    from the last angle, or if ``known`` or ``beside`` is no Euler angle.
+    Most books number phi, theta and psi by 1, 2 and 3; some, on aircraft, by 3, 2 and 1. One name in the claim shows
+    the order: ``name``, which the claim has for the angle or rate ``beside``. If phi is called theta_1, then psi is
+    theta_3; if psi is called theta_1, then phi is theta_3. Return "" if ``name`` does not end with one of the two
+    numbers of ``beside``, or if ``known`` or ``beside`` is not phi, theta, psi or the rate of one of these angles.
 
     Examples
     --------
@@ -110,8 +113,8 @@ def absent_name(known: str, renaming: dict[str, str | None], unused: Collection[
 def _absent_entry(known: str, renaming: dict[str, str | None]) -> str | None:
     """Return the name that a claim would have for the entry ``known`` of a rotation matrix: r_21 for R_21.
 
-    The claim must call another entry, R_11, by a name with the same indices, r_11. Return None if ``known`` is no
-    entry, if the claim has no entries of the matrix, or if the indices differ, as for r_12 in place of R_21.
+    The claim must call another entry, R_11, by a name with the same indices, r_11. Return None if ``known`` is not an
+    entry, if the claim has no entries of the matrix, or if the indices differ: r_12 in place of R_21.
     """
     pairs = [(mine, other) for mine, other in renaming.items() if other is not None and MATRIX_ENTRY.fullmatch(mine)]
     if MATRIX_ENTRY.fullmatch(known) is None or not pairs or any(mine[-2:] != other[-2:] for mine, other in pairs):

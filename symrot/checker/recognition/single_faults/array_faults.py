@@ -36,7 +36,7 @@ OPERATIONS = ("skew", "cross", "dot", "qmul", "conjugate", "trace")
 LEFT_OUT = ("extra_term", "overall_sign")
 """Codes of the faults that are not looked for: a superfluous term, and the wrong sign of a whole formula.
 
-A claim with one more term, or with the opposite vector, is more likely right for something else than faulty.
+A claim with one more term, or with the opposite vector, is probably a correct formula for something else.
 """
 
 
@@ -60,8 +60,10 @@ def has_arrays(formula: Node, numeric: NumericFilter) -> bool:
 def array_faults(formula: Node, numeric: NumericFilter, letters: Letters) -> list[ArrayFault]:
     """Return at most MOST_EDITS edits that may undo a fault of a formula, each with the edited formula's values.
 
-    The edits are sorted by the sum of the entries at the first test point, so that `matching` finds them by this sum.
-    Edits of a scalar formula only add parentheses or exchange two moments of inertia.
+    These are the values of the edited formula at the test points ``letters.points``. The edits are sorted by the sum of
+    the entries that the edited formula has at the first test point. The function `matching` looks up edits by this sum,
+    to find those that give a formula the values that it should have. Edits of a scalar formula only add parentheses or
+    exchange two moments of inertia.
     """
     # other faults of scalar formulas are sought part by part, in the module `parts`
     if has_arrays(formula, numeric):
@@ -194,7 +196,7 @@ def _shape(node: Node, numeric: NumericFilter) -> tuple[int, int] | None:
 
 
 def _scalars(formula: Node, numeric: NumericFilter, letters: Letters) -> Iterator[Node]:
-    """Yield factors that a claim may have lost, such as sin(phi), sin(phi)^2 and 1/sin(phi) for an angle phi in it."""
+    """Yield factors that a claim's formula may have lost: if it contains the angle phi, sin(phi) and 1/sin(phi)."""
     made: dict[Node, None] = dict.fromkeys([LACKING] if LACKING in letters.atoms else [])
     for angle in letters.angles:
         for function in ("sin", "cos", "tan"):

@@ -84,9 +84,10 @@ class Search(NamedTuple):
 
 
 CLOSE = 1e-8
-"""If two values of a part differ relatively by more than this at the first test point, no other point is tested.
+"""Largest relative difference of two values of a part at the first test point for which the other points are tested.
 
-One value is that of the part after a change, the other is the value with which the whole formula is right.
+One value is that of the part after a change. The other is the value that the part must have to make the whole formula
+right.
 """
 
 

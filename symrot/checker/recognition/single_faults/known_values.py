@@ -93,7 +93,7 @@ def tree_of(known: Known) -> Node:
 def tape_of(known: Known) -> Tape | None:
     """Return a known formula as a tape, a list of operations that is evaluated quickly.
 
-    Return None for a matrix, and for a formula with a function that no tape has.
+    Return None for a matrix, and for a formula with a function that tapes do not support.
     """
     return tape_of_tree(tree_of(known))
 
@@ -115,9 +115,10 @@ class KnownValues:
 
     @cached_property
     def on_tape(self) -> list[list[float]] | None:
-        """For each point, the list of the values of all parts of the formula, computed by its tape (operations).
+        """For each point, the list of the values of all parts of the formula, computed from its list of operations.
 
-        None if the formula has no tape, or no value at one of the points.
+        This list is the result of `tape_of`. None if `tape_of` returns None, or if the formula has no value at one of
+        the points.
         """
         tape = tape_of(self.known)
         values = [] if tape is None else [tape.values(symbols) for symbols in self.symbols]
@@ -151,8 +152,8 @@ class KnownValues:
 def views(known: Known, values: Values) -> Iterator[Values]:
     """Yield ``values``, and ``values`` transposed, doubled, or with a quaternion's scalar last, where this makes sense.
 
-    Only the values of square matrices are transposed. Only the values of a formula of which any multiple has the same
-    name (``known.scaled``), such as a quaternion rate, are doubled.
+    Only the values of square matrices are transposed. The values are doubled only if multiples of the formula count as
+    the same formula (``known.scaled``): a quaternion rate, for example, may be stated with or without its factor 1/2.
     """
     yield values
     if not is_matrix(values[0]):

@@ -31,7 +31,7 @@ POINTS = 3
 MANY = 9
 """From this number of letters on, a formula is tested for letters on which its value does not depend.
 
-A formula with a matrix of 3 x 3 letters may depend only on some of the letters, as the trace does.
+A formula with a matrix of 3 x 3 letters may depend only on some of the letters: the trace depends on three.
 """
 
 
@@ -131,7 +131,7 @@ def nodes_of(tree: Node) -> list[Node]:
 
 
 def is_atom(tree: Node) -> bool:
-    """Return whether a tree is a name, a function of time such as ``phi(t)``, or a derivative of one by time."""
+    """Return whether a tree is a name, a function of time such as ``phi(t)``, or a time derivative of a function."""
     if tree.kind == "name":
         return True
     inner = tree

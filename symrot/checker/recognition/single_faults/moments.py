@@ -17,7 +17,7 @@ FIRST_EQUAL = (("A", "B"), ("I_xx", "I_yy"))
 
 
 def is_symmetric_body(absent: str, letter: str, renaming: dict[str, str | None], times: int) -> bool:
-    """Return whether a claim may use one letter for two equal moments of inertia, as A in place of both A and B.
+    """Return whether a claim may use one letter for two equal moments of inertia: A in place of both A and B.
 
     ``absent`` is the known formula's symbol that the claim lacks, such as B. ``renaming`` maps the known symbols to the
     claim's letters. ``letter`` is the claim's letter in question; it occurs ``times`` times in the claim's formula.
@@ -56,7 +56,7 @@ def _share(added: Sequence[float], mass: Values, length: Values) -> Fraction | N
 def _shares(added: Sequence[float], mass: Values, lengths: Sequence[Values]) -> list[Fraction | None]:
     """Return simple fractions [k, l] with ``added`` = m (k a^2 + l b^2) at all points, for mass m and lengths a and b.
 
-    A number that is no simple fraction is replaced by None; [None] if no k and l fit.
+    If k or l is not a simple fraction, None stands in its place. If no numbers k and l fit, return [None].
     """
     (first, second, *_), rows = [value / m for value, m in zip(added, mass, strict=True)], [
         (a * a, b * b) for a, b in zip(*lengths, strict=True)

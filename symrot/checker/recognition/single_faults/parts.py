@@ -27,7 +27,7 @@ __all__ = [
 CLOSE = 1e-9
 """The largest relative difference between values that count as equal."""
 NEUTRAL = {"sum": 0.0, "product": 1.0}
-"""Kind of an operation -> the value of an argument that has no effect: a term 0, a factor 1."""
+"""Kind of an operation -> the value of an argument that does not change the result: 0 for a term, 1 for a factor."""
 LARGEST = 400
 """The largest numerator and denominator of a rational number that is recognised by its value."""
 
@@ -222,11 +222,12 @@ def _wrong_row(values: Values, needed: Values) -> int | None:
 
 
 def _row_of_matrix(whole: Valued, needed: Values, row: int) -> Iterator[tuple[Valued, Values]]:
-    """Yield (entry, values that the entry should have) for the entries in row ``row`` of the matrix in ``whole``.
+    """Yield the entries in row ``row`` of a matrix, each with the values that would make ``whole`` right by itself.
 
-    ``whole`` is a matrix times a column; only component ``row`` of the product differs from ``needed``. A yielded entry
-    can correct it alone: if this entry had the values of its pair (one for each test point) and all other entries kept
-    their values, the product would have the values ``needed``. Entries that multiply a zero of the column are left out.
+    ``whole`` is the product of this matrix and a column. Only component ``row`` of the product differs from ``needed``,
+    the values that the product should have. In a yielded pair (entry, values) there is one value for each test point.
+    If just this entry changed to these values, the product would have the values ``needed``. Entries that are
+    multiplied by a zero of the column are left out.
     """
     factors = whole.node.args
     place, matrix = next(((n, factor) for n, factor in enumerate(factors) if matrix_entries(factor)), (0, whole.node))
@@ -347,7 +348,7 @@ def multiples(part: Part) -> Iterator[Correction]:
 
 
 def rational(values: Sequence[float]) -> Fraction | None:
-    """Return the rational number that all values equal: 1/3 for 0.3333333333. None if there is no simple one."""
+    """Return the simple rational number that all values equal, 1/3 for 0.3333333333; None if there is no such one."""
     first = values[0]
     if not math.isfinite(first) or not 1e-4 < abs(first) < 1e4:
         return None

@@ -29,7 +29,7 @@ RADIUS = re.compile(r"[rR](_?\w+)?|a")
 COORDINATES = ("x", "y", "z")
 
 UNUSUAL = 2
-"""Number that `strangeness` adds for each radius that a renaming turns into another length, or the reverse.
+"""Number that `strangeness` adds for each radius that is renamed to another length, and each other length to a radius.
 
 The function `strangeness` measures how unlikely a renaming is; each changed name counts 1.
 """
@@ -90,7 +90,7 @@ NUMBERED = re.compile("([a-z])_?([1-9])")
 
 
 def _moved(renaming: dict[str, str | None]) -> int:
-    """Return how many symbols a renaming moves to another axis, as I_1 to I_2."""
+    """Return how many symbols a renaming moves to another axis: I_1 to I_2."""
     pairs = [(axes_of(name), axes_of(plain_name(other))) for name, other in renaming.items() if other is not None]
     return sum(bool(mine and new and mine != new) for mine, new in pairs)
 
@@ -108,7 +108,7 @@ def _has_letter_of(name: str, other: str) -> bool:
 def strangeness(renaming: dict[str, str | None]) -> int:
     """Return how many names a renaming changes or leaves out; a radius renamed to another length counts three times.
 
-    So does another length that is renamed to a radius.
+    A length that is not a radius, but is renamed to one, counts three times as well.
     """
     changed = [name for name, other in renaming.items() if other is None or plain_name(other) != name]
     lengths = [name for name in changed if UNIT_OF_NAME.get(name) == "m" and name not in COORDINATES]

@@ -55,8 +55,9 @@ def near_formulas(claim: Claim, named: NamedFormula, fits: Callable[[Known], boo
     ``fits(known)`` decides which known formulas are compared. After each change, the claim's formula has the values of
     a known one at random points.
 
-    If the claim's formula contains the root of a sum and has the values of a known formula as it stands, the list has
-    one entry, with the code "none": such a formula may be right although its fingerprint is not that of the known one.
+    A formula with the square root of a sum, such as a*sqrt(1 - x/a^2), may equal a known formula although the look-up
+    of known formulas, by a hash, does not find it. If such a formula has the values of a known one without a change,
+    the list has one entry: the unchanged formula with the code "none".
 
     The list is empty in three cases: no change is found; the claim's formula is longer than MOST_NODES or cannot be
     evaluated at enough random points; the claim has hypotheses and its formula has the values of a known one already.
@@ -85,8 +86,9 @@ def _pairs(
     """Yield the pairs (known formula, renaming of its symbols to the claim's letters) to be compared with a claim.
 
     The formulas are those for which ``fits`` is true, and relations solved for the claim's quantity. Some known
-    formulas are skipped: scalars if the claim's formula is a matrix and the reverse, and formulas with at least two
-    symbols more or fewer than the claim's. So are most formulas with angles if the claim has none, and the reverse.
+    formulas are skipped: scalars if the claim's formula is a matrix, matrices if it is a scalar, and formulas with at
+    least two symbols more or fewer than the claim's. Also skipped are most formulas with angles if the claim has none,
+    and most formulas without angles if the claim has some.
     """
     letters = search.letters
     names, quantity = [text_of(atom) for atom in letters.atoms], text_of(quantity_node(named))
@@ -138,7 +140,7 @@ _latest: dict[Any, tuple[Search | None, int]] = {}
 
 def has_root_of_sum(formula: Node) -> bool:
     """Return whether a formula contains a sum under a square root."""
-    # fingerprints of equal formulas with such roots may differ by a sign
+    # fingerprints (hashes of values) of equal formulas with such roots may differ by a sign
     roots = (node.args[0] for _, node in walk(formula) if node.kind == "call" and node.value == "sqrt")
     return any(node.kind == "sum" for root in roots for _, node in walk(root))
 

@@ -97,11 +97,12 @@ def solved_claims(left: Node, right: Node, atoms: Sequence[Node]) -> Iterator[Na
 
 
 def put_back(left: Node, right: Node, named: NamedFormula, tree: Node) -> tuple[Node, Node] | None:
-    """Return the two sides of the equation ``left == right`` with the repair of one term put in.
+    """Return the two sides of the equation ``left == right`` after the repair of one of their terms.
 
-    ``named`` is the same equation solved for a letter, and ``tree`` its formula after the repair: if a term of ``tree``
-    differs from that of ``named.formula``, it replaces the old term in ``left`` and ``right``. Return None if the
-    formulas differ in more terms, in none, or in the number of terms.
+    ``named`` is the same equation solved for a letter, and ``tree`` is its formula after the repair. If exactly one
+    term of ``tree`` differs from the term of ``named.formula`` at the same place, the new term replaces the old one in
+    ``left`` and ``right``. Return None if several terms differ, if none differs, or if the formulas have different
+    numbers of terms.
     """
     before, after = _terms(named.formula), _terms(tree)
     changed = [(old, new) for old, new in zip(before, after, strict=False) if old != new]

@@ -15,10 +15,9 @@ from symrot.checker.units.units import read_unit
 __all__ = ["has_other_unit"]
 
 UNITS = {"[kg]": 1.37, "[m]": 1.61, "[s]": 0.83}
-"""Base unit -> arbitrary factor for a test of units: a mass counts 1.37 times, a length 1.61 times its number in SI.
+"""Base unit -> arbitrary factor for a test of units: the SI value of a mass is multiplied by 1.37, of a length by 1.61.
 
-If the letters are multiplied by the factors of their units, two formulas with different units change by different
-factors.
+If each letter is multiplied by the factor of its unit, two formulas with different units change by different factors.
 """
 
 
@@ -64,7 +63,7 @@ def has_other_unit(named: NamedFormula, known: Known, nodes: dict[str, Node], le
 def _scale(unit: str | None) -> float | None:
     """Return the factor that converts a number in the SI unit ``unit`` to the invented units of ``UNITS``.
 
-    For "m/s" it is 1.61/0.83, as ``UNITS`` has 1.61 for m and 0.83 for s. Return None if ``unit`` is None.
+    For "m/s" the factor is 1.61/0.83, since ``UNITS`` has 1.61 for m and 0.83 for s. Return None if ``unit`` is None.
     """
     if unit is None:
         return None

@@ -85,7 +85,7 @@ def _admits_squares(node: Node) -> bool:
 
 
 def _is_scalar(node: Node, is_matrix: Callable[[Node], bool]) -> bool:
-    """Return whether a part is a scalar name or call, such as r or sin(x), that may have lost a square."""
+    """Return whether a part is a scalar name or call, such as r or sin(x), which the author may have meant squared."""
     if node.kind not in ("name", "call") or node == Node("name", "pi") or node.value in ("Matrix", "diff", "integrate"):
         return False
     # calls with scalar values and matrices as arguments
