@@ -67,10 +67,7 @@ def angle_of_two_rotations(random: Random) -> Problem:
 
 
 def order_matters(random: Random) -> Problem:
-    """Return a problem that asks for the distance between two end positions of a pointer.
-
-    The pointer reaches one of them by two rotations, and the other by the same rotations in the opposite order.
-    """
+    """Return a problem on the distance between the end positions of a pointer after two rotations in both orders."""
     one, two = random.sample(AXES, 2)
     pointer = Matrix([int(axis == one) for axis in AXES])
     first = elementary_rotation(two, theta) * elementary_rotation(one, phi) * pointer
