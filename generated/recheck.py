@@ -874,7 +874,7 @@ class CReader(Reader):
         if shape == "blocks":
             self.take(f"{COUNTERS[self.real]} beyond = 0;")
         self.take(f"{INDEPENDENT} {OF_SPAN}")
-        bodies = [self.body(asks_far=shape == "blocks")]
+        bodies = [self.body(tests_angles=shape == "blocks")]
         self.take(AGAIN if shape == "blocks" else f"{INDEPENDENT} {OF_SPAN}")
         bodies.append(self.body())
         self.take("} }")
@@ -885,18 +885,18 @@ class CReader(Reader):
         words = [token.text for token in tokens(phrase, phrase)[:-1]]
         return words == [token.text for token in self.tokens[self.position : self.position + len(words)]]
 
-    def body(self, asks_far=False):
+    def body(self, tests_angles=False):
         """Read statements up to a closing brace, where the scope of their variables ends; return a Body.
 
-        With ``asks_far``, one statement may test angles for the range of symrot_sin and symrot_cos.
+        With ``tests_angles``, one statement may test whether angles are too large for symrot_sin and symrot_cos.
         """
         outer, self.names, self.assigned = self.names, set(self.names), set()
         statements, far = [], []
         while not self.accept("}"):
             if self.token.text == "const":
                 statements.append(self.local())
-            # beyond += symrot_far(a) + ..; tests whether angles are in the range of symrot_sin and symrot_cos
-            elif asks_far and not far and self.accept("beyond"):
+            # beyond += symrot_far(a) + ..; counts the angles that are too large for symrot_sin and symrot_cos
+            elif tests_angles and not far and self.accept("beyond"):
                 far = self.far()
             else:
                 statements.append(self.assignment())
@@ -924,21 +924,22 @@ class CReader(Reader):
         return place, expression
 
     def far(self):
-        """Read the line that tests angles for the range of symrot_sin and symrot_cos; return the tested angles."""
-        asked = []
+        """Read the line that tests whether angles are too large for symrot_sin and symrot_cos; return these angles."""
+        tested = []
         self.take("+=")
-        while not asked or self.accept("+"):
+        while not tested or self.accept("+"):
             self.take(f"symrot_far{REALS[self.real]}(")
-            asked.append(self.sum())
+            tested.append(self.sum())
             self.take(")")
         self.take(";")
-        return asked
+        return tested
 
 
 def run(body, numbers, inputs):
-    """Run a C ``body`` on ``inputs`` in the arithmetic ``numbers``.
+    """Run the statements ``body`` of a C function on ``inputs`` in the arithmetic ``numbers``.
 
-    Return a map from each output to its value, and the set of the angles whose size the body tests with symrot_far.
+    Return a map from each output to its value, and the set of the angles to which the statements apply symrot_far, the
+    C function that tells whether an angle is too large for symrot_sin and symrot_cos.
     """
     names, outputs = dict(inputs), {}
     for target, expression in body.statements:
@@ -1066,7 +1067,11 @@ def defined_functions(definitions):
 
 
 class Specification:
-    """The formulas of a certificate as expression trees, which may call ``functions``."""
+    """The formulas of a certificate as expression trees.
+
+    The formulas may call ``functions``, a map from name to Definition: functions that the certificate itself defines,
+    such as sinc.
+    """
 
     def __init__(self, data, functions):
         spec = data["spec"]
@@ -1273,7 +1278,7 @@ class ExactPoint(NamedTuple):
 def exact_point(specification):
     """Return a random point at which all inputs differ, so that a C text cannot use one input in place of another.
 
-    ValueError is raised if two inputs are the same, or one is pi.
+    ValueError is raised if the certificate gives two inputs the same symbol or formula, or gives an input the value pi.
     """
     names = Names(AnyFunctions())
     inputs = specification.set_values(names)
@@ -1346,8 +1351,9 @@ def hexadecimal(text, place):
 def point_of_box(data, specification, real):
     """Return a random point of the box for which rounding errors are bounded, or None if no point can be drawn.
 
-    No point can be drawn if the certificate states no bounds, if the kernel has constants of a scene as parameters, or
-    if the bounds exclude points of the box (a clearance that is not 0).
+    No point can be drawn if the certificate states no bounds, or if the kernel has constants of a scene as parameters.
+    Nor can one be drawn if the bounds exclude points of the box: those at which an atan2 has arguments (y, x) of a
+    length below the certificate's ``clearance``, if that is not 0.
     """
     if "rounding" not in data or data["spec"]["parameters"]:
         return None

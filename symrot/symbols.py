@@ -1,6 +1,7 @@
 """The SymPy symbols of symrot's formulas, with assumptions and units (see :mod:`symrot.conventions`).
 
-Each symbol is made once, but for the constants of scenes, which :func:`constant` makes.
+All symbols are defined here, except those of a scene's constants, such as the weight: :func:`constant` makes these when
+a formula needs them.
 """
 
 from sympy import Symbol

@@ -264,8 +264,9 @@ def _operations(contestants: Sequence[Contestant]) -> tuple[int, int]:
 def _ratios(contestants: Sequence[Contestant]) -> dict[str, float]:
     """Return, for each shape of input, the ratio of symrot's time to that of the fastest other tool.
 
-    Least times are compared. For the shape ``"many"``, it is instead the median of the ratios in the single rounds, for
-    the tool for which this median is largest.
+    The time of a tool is its least time of all rounds. For the shape ``"many"``, the ratios of symrot's time to that of
+    each other tool are computed within each round, and their median is taken for each tool. The result is then the
+    largest of these medians.
     """
     own, *others = contestants
     ratios = {}

@@ -2,8 +2,9 @@
 
     python -m symrot.bench.overhead [--rounds 25] [SCENE ...]
 
-For the bare call, all addresses are computed before, and the run is reset by copying a few bytes. Results are medians
-of processor time of alternating runs.
+For the bare call, all addresses are computed beforehand. A stepper starts anew in each bare call: its state is set back
+to the start of the motion by copying a few bytes. The two kinds of calls alternate; results are medians of processor
+time.
 """
 
 import argparse

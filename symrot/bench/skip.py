@@ -1,9 +1,10 @@
 """The gain of specialised kernels: cost of each motion with the most general kernel and with the scene's own kernel.
 
 The general kernel has a full inertia tensor, the attitude and all kinds of torques that can act together. The result is
-a table with a row for each motion: nanoseconds per evaluation of the rates in C, and microseconds per motion, with the
-general and with the own kernel; the column ``auto us`` is the time with the method ``auto``. A row is marked
-``TOO FAR`` if the final states that these computations reach differ by more than AGREEMENT.
+a table with a row for each motion: nanoseconds per evaluation of the rates in C, and microseconds per motion, each with
+the general kernel and with the scene's own kernel. The column ``auto us`` is the time of the motion with the method
+``auto``, for which symrot chooses a closed form or a stepper by itself. A row is marked ``TOO FAR`` if the final states
+of these computations differ by more than AGREEMENT.
 """
 
 import ctypes

@@ -2,8 +2,8 @@
 
     python -m symrot.bench.taylor [--rounds 7] [--quick] [--orders] [--motion NAME]
 
-Errors are those of the last state against 40 digits. For each power of ten of the error (decade), the table has the
-fastest run of at most that error.
+The error of a run is the difference of its last state from a solution in 40 digits. For each decade (power of ten) of
+the error, the table has the fastest run whose error is at most that power of ten.
 """
 
 import argparse

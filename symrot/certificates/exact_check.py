@@ -243,12 +243,12 @@ class KernelCheck:
         return written, exact * self.symbols["pi"] if times_pi else exact
 
     def run(self, body, places, targets=(), tested=()):
-        """Evaluate the statements ``body`` of a C function; return the same result as :meth:`Evaluator.run`.
+        """Evaluate the statements ``body`` of a C function; return its value, or a map from outputs to their values.
 
         ``places`` maps each input of the body, such as ``"q[0]"``, to its value. ``targets`` are the outputs that the
-        body may assign. ``tested`` lists the angles, as C expressions, whose size the C text tests. ValueError is
-        raised if the body calls a function that is accurate only for small angles, such as ``symrot_sin``, for an angle
-        that is not in ``tested``.
+        body may assign. Some functions, such as ``symrot_sin``, are accurate only for angles up to a limit. ``tested``
+        lists, as C expressions, the angles that the C text compares with this limit, by ``symrot_far``. ValueError is
+        raised if the body calls such a function for an angle that is not in ``tested``.
         """
         reader = Evaluator({}, self.functions, self.real, self.calls, self.constants if targets else ())
         computed = reader.run(body, places, targets)
@@ -454,10 +454,14 @@ def prove(law, case, formulas):
 
 
 def complete(cases):
-    """Return whether the cases of a law's proof cover both branches of each conditional that they decide."""
+    """Return whether the cases of a law's proof are complete: whether they cover both branches of each conditional.
+
+    A law is an identity that the kernel's formulas obey. If the formulas contain conditionals, the law is proven case
+    by case: each case assumes, for each conditional that matters in it, which of the two branches applies.
+    """
     if not cases or not cases[0]:
         return len(cases) == 1
-    # a case is a list of choices [left, relation, right], with the relation "<" or ">="
+    # ``cases``: for each case its assumptions [left, relation, right], with the relation "<" or ">="
     left, _, right = cases[0][0]
     branches = [[case[1:] for case in cases if case and case[0] == [left, sign, right]] for sign in ("<", ">=")]
     return len(cases) == sum(map(len, branches)) and all(map(complete, branches))

@@ -95,10 +95,10 @@ sine of x, divided by x.
 
 
 def exact(precision: str) -> Callable[[Fraction], Residue]:
-    """Return a function from a constant to the residue of the number for which it stands in the C text.
+    """Return a function that takes a constant of the C text and returns, modulo ``PRIME``, the exact number it means.
 
-    The constant is rounded to ``precision`` first, as in the C text. It stands for the simple fraction that rounds to
-    the same number, such as 1/3 for 0.333.., or else for its rounded value.
+    The function first rounds the constant to ``precision``, as the C text does. The exact number is the simple fraction
+    with the same rounded value, such as 1/3 for 0.333.. If there is none, it is the rounded value itself.
     """
     return lambda value: _intended(
         float(value) if precision == "binary64" else float(unpack("f", pack("f", float(value)))[0]), precision

@@ -125,10 +125,12 @@ def trusted(method: str, has_bounds: bool, elliptic: bool = False) -> Data:
 
 
 def step_section(method: Method) -> Data:
-    """Return the name of a step's method with its options: its order, and the inputs by which it is differentiated.
+    """Return the section ``step`` of a certificate: the name of the step's method, and the options of the method.
 
-    For an exact step by steady rotations, the option is the body's symmetry axis, 1, 2 or 3, or None if omega is
-    constant.
+    The options of a numerical method are its order and, if it also computes derivatives, the inputs with respect to
+    which the new state is differentiated. An exact step by steady rotations computes the closed form of a motion whose
+    attitude is a product of rotations at constant rates. Its option is the body's symmetry axis, 1, 2 or 3, or None if
+    omega is constant.
     """
     if isinstance(method, SteadyRotations):
         return {"method": method.name, "axis": None if method.axis is None else method.axis + 1}
@@ -275,9 +277,12 @@ def _require_intended(rates: Program) -> None:
 
 
 def _with_intended_constants(rates: Program, method: Method) -> Method:
-    """Return a method with exact coefficients, such as 1/3, that the C text contains rounded and times a factor.
+    """Return a method whose coefficients are exact numbers, such as 1/3, instead of rounded decimals.
 
-    CertificateError is raised if two constants of the C text stand for different values of one coefficient.
+    The C text multiplies each coefficient by the leading factors of the rates and contains the rounded products. The
+    exact coefficient is recovered from the exact number for which such a constant stands. A method without rounded
+    coefficients is returned unchanged. CertificateError is raised if the constants of one coefficient stand for
+    different values of it.
     """
     if not isinstance(method, RungeKutta) or not method.rounded:
         return method

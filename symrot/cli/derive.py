@@ -17,10 +17,9 @@ PAGES: dict[str, Callable[[Any], str]] = {
     "html": lambda page: page.html(),
 }
 PAGE_FILES = {".html": "html", ".htm": "html", ".tex": "latex", ".md": "markdown", ".pdf": "latex"}
-"""Suffix of a file -> format of pages.
+"""Suffix of a file -> the format of pages that an error message suggests.
 
-The option -o takes a folder. If a FILE is given, the error message suggests a folder, and ``--format`` with the format
-of this suffix.
+The option -o takes a folder. For a file, as in ``-o page.tex``, the message says to write ``--format latex -o DIR``.
 """
 
 

@@ -136,10 +136,10 @@ def _is_driven(scene: Scene) -> bool:
 
 
 def _driven_axis(scene: Scene) -> int | None:
-    """Return the index of the principal axis about which the body rotates at all times; 0 if it stays at rest.
+    """Return the index of the body axis about which the body rotates at all times; 0 if it stays at rest.
 
-    None if the axis of rotation changes or is no principal axis that the scene gives, if a torque is neither constant
-    in the body nor linear damping, or if the scene has no torque.
+    None if the axis of rotation changes or is not one of the body axes 0, 1, 2, if the body axes are not principal
+    axes, if a torque is neither constant in the body nor linear damping, or if the scene has no torque.
     """
     if not _is_driven(scene):
         return None
@@ -190,10 +190,10 @@ def _axial(scene: Scene) -> Starts:
 
 
 def _field_axis(name: str) -> Callable[[Scene], int | None]:
-    """Return a function from a scene to the index (0, 1 or 2) of the body axis along a vector of its first torque.
+    """Return a function that takes a scene and returns the body axis, 0, 1 or 2, along which a constant vector lies.
 
-    ``name`` is the vector's name in the scene, such as ``center_of_mass``. The function returns None if the vector is
-    zero or along none of the three axes.
+    ``name`` is the name of the vector in the first torque of the scene, such as ``center_of_mass`` of a gravity torque.
+    The function returns None if the vector is zero or lies along none of the three axes.
     """
     return lambda scene: _only_axis(scene.torques[0].vector(name))
 

@@ -1,8 +1,8 @@
-"""Formulas of outputs and of their derivatives, written in several ways that differ in the number of operations.
+"""Formulas of outputs and of their derivatives, in several forms that differ in the number of operations.
 
-All ways are equal in exact arithmetic; the caller counts the operations of each and chooses. The derivatives come from
-the chain rule, from forward accumulation (each temporary by the inputs) or from backward accumulation (each output by
-the temporaries). A temporary is an intermediate result.
+All forms are equal in exact arithmetic; the caller counts the operations of each and chooses. The derivatives come from
+the chain rule, from forward accumulation (each temporary is differentiated with respect to the inputs) or from backward
+accumulation (each output is differentiated with respect to the temporaries). A temporary is an intermediate result.
 """
 
 from collections.abc import Iterable, Iterator, Mapping, Sequence
@@ -27,7 +27,7 @@ _ARITHMETIC = ("+", "-", "*", "/", "neg")
 _OWN = {name: Function(name, real=True) for name in OWN_FUNCTIONS}
 _FUNCTIONS = {name: Abs if name == "abs" else getattr(sympy, name) for name in FUNCTIONS} | _OWN
 
-Entries = Sequence[tuple[str, str]]  # names of an output and of the input by which its derivative is taken
+Entries = Sequence[tuple[str, str]]  # names of an output and of the input with respect to which it is differentiated
 Groups = Sequence[Sequence[str]]  # inputs that belong together, such as the components of a vector
 
 
@@ -76,7 +76,7 @@ def ways(value: Formulas, chained: Formulas, base: Program, entries: Entries, gr
     value : Formulas
         The outputs, without derivatives.
     chained : Formulas
-        The outputs and their derivatives by the chain rule. This is the first result.
+        The outputs and their derivatives, computed by the chain rule. This is the first result.
     base : Program
         A program that computes the outputs alone; its temporaries are differentiated too.
     entries : sequence of (output, input)
@@ -173,9 +173,10 @@ def _single_operations(program: Program) -> Program:
 
 
 def _slopes(formula: Expr, value: Symbol | None = None) -> dict[Symbol, Expr]:
-    """Return the partial derivatives of a formula, by the symbols in the formula.
+    """Return the partial derivatives of a formula with respect to each symbol in it: a map from symbols to derivatives.
 
-    The derivatives may contain ``value``, the symbol for the formula itself: y = sqrt(a) has the derivative 1/(2 y).
+    The derivatives may contain ``value``, the symbol for the formula itself: y = sqrt(a) has the derivative 1/(2 y)
+    with respect to a.
     """
     held = sorted(formula.free_symbols, key=str)
     above, below = formula.as_numer_denom()
@@ -289,7 +290,10 @@ def _linear_outputs(explicit: Formulas, entries: Entries, groups: Groups) -> Lin
 
 
 def _with_sums(formulas: Formulas, linear: Linear) -> Formulas:
-    """Return formulas in which an output f that is linear in x and y is ``x*f_by_x + y*f_by_y``, from its derivatives.
+    """Return formulas in which each output f that is linear in some inputs is computed from its derivatives.
+
+    If f is linear in x and y, with f = 0 at x = y = 0, it is computed as ``x*f_by_x + y*f_by_y``: the products of the
+    inputs with the derivatives of f with respect to them.
 
     ``linear`` lists these outputs, as :func:`_linear_outputs` returns them.
     """

@@ -18,7 +18,7 @@ class Dual:
     """A number with its derivatives: the variable x at 3 is ``Dual(3, {"x": 1})``, its square ``Dual(9, {"x": 6})``."""
 
     def __init__(self, value: Any, slopes: Mapping[str, Any]) -> None:
-        # slopes: name of a variable -> derivative by it; an absent variable has the derivative 0
+        # slopes: name of a variable -> derivative with respect to it; an absent variable has the derivative 0
         self.value, self.slopes = value, slopes
 
     def _with(self, value: Any, factor: Any) -> "Dual":

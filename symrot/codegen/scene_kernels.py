@@ -76,7 +76,9 @@ def rates_program(equations: Equations, name: str) -> Lowered:
 
 
 def rate_derivatives(equations: Equations, variables: Sequence[str]) -> tuple[Formulas, tuple[Argument, ...]]:
-    """Return (formulas, output arrays) of the rates dy/dt of a scene and of their derivatives by ``variables``.
+    """Return (formulas, output arrays) of the rates dy/dt of a scene and of their derivatives.
+
+    The rates are differentiated with respect to ``variables``.
 
     Parameters
     ----------
@@ -100,8 +102,8 @@ def rate_derivatives(equations: Equations, variables: Sequence[str]) -> tuple[Fo
     every = [symbol for symbols_ in chosen.values() for symbol in symbols_]
     if len(set(every)) < len(every) or len(chosen) < len(variables):
         raise InputError(
-            f"expected each state and constant at most once among the variables {', '.join(variables)} by which to "
-            "differentiate; y stands for all states, omega and q for their components"
+            f"expected each state and constant at most once among the variables {', '.join(variables)} with respect to "
+            "which to differentiate; y stands for all states, omega and q for their components"
         )
     rates, target = _rates(equations), _rates_argument(equations)
     slopes, outputs, arguments = Derivatives(rates.named), list(rates.outputs), [target]
@@ -191,7 +193,10 @@ def derive_scene_kernel(
 ) -> SceneKernel:
     """Return the kernel of a scene: programs of the rates, of energy and momentum, and of conserved quantities.
 
-    ``on_rates`` is called early, with the program and the C text of the rates.
+    ``structure`` is the structure of the scene: its body, torques and states, and which of their constants are zero,
+    equal or free, without the values of the free ones.
+
+    ``on_rates`` is called with the program and the C text of the rates, before the other programs are derived.
     """
     equations = equations_of_motion(structure)
     rates = rates_program(equations, RATES)
@@ -209,7 +214,10 @@ def derive_scene_kernel(
 
 
 def rates_source(rates: Lowered) -> str:
-    """Return the C code of the rates as a function of ``(t, y, p, dy)``, with p even if there are no parameters."""
+    """Return the C code of the rates: a function with the arguments ``(t, y, p, dy)``.
+
+    The argument p is present even if the rates have no parameters.
+    """
     source = c_function(rates.program, "static inline ")
     if rates.parameters:
         return source
@@ -254,8 +262,8 @@ def scene_description(
 ) -> Description:
     """Return the texts for the head comment of a scene's kernel, a file in the language ``target``.
 
-    ``bounds`` are pairs (heading, text) about rounding errors, used for C; ``jacobian`` are the states and constants by
-    which the kernel computes derivatives; ``exceptions`` is a text from :func:`corner_note`.
+    ``bounds`` are pairs (heading, text) about rounding errors, used for C; ``jacobian`` are the states and constants
+    with respect to which the kernel computes derivatives; ``exceptions`` is a text from :func:`corner_note`.
     """
     derivatives = f"; with their derivatives by {', '.join(jacobian)}, row by row" if jacobian else ""
     option = f" --jacobian {','.join(jacobian)}" if jacobian else ""

@@ -25,7 +25,11 @@ _HALF, _TWO = Fraction(1, 2), Fraction(2)
 
 @dataclass(frozen=True)
 class SteadyRotations:
-    """The exact step of a motion whose attitude is a product of steady rotations."""
+    """The method of a step that computes the exact motion, as a product of one or two steady rotations.
+
+    It is one of the methods of :func:`symrot.codegen.steps.step_program`. The module's docstring has the formula of the
+    attitude.
+    """
 
     # the symmetry axis, 0 to 2, about which omega rotates in the body; None if omega is constant
     axis: int | None
@@ -42,7 +46,12 @@ class SteadyRotations:
         self, rates: Program, values: Mapping[str, Any], dt: Any, functions: Mapping[str, Callable[..., Any]],
         number: Callable[[Fraction], Any],
     ) -> list[Any]:  # fmt: skip
-        """Return omega and the quaternion after a step, with arguments as for :func:`symrot.codegen.steps.stepped`."""
+        """Return omega and the quaternion after a step of size ``dt``, s: a list of 7 numbers.
+
+        ``rates`` is the right-hand side of the equations of motion. ``values`` maps the names of the states and
+        parameters to numbers of any kind, such as floats or Decimals. ``functions`` maps names such as ``"sin"`` to the
+        functions of this kind of number, and ``number`` converts a Fraction to it.
+        """
         # this is the motion if the rates are those of the module's docstring; certificates prove it
         omega, half = [values[name] for name in _OMEGA], number(_HALF) * dt
         q = [values[name] for name in _QUATERNION]

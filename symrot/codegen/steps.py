@@ -65,7 +65,10 @@ class TaylorSeries:
 
 @dataclass(frozen=True)
 class WithDerivatives:
-    """A numerical method whose step also computes exact derivatives of the new state by some of its inputs."""
+    """A numerical method whose step also computes exact derivatives of the new state.
+
+    The derivatives are those with respect to some inputs of the step, such as the old state.
+    """
 
     # the same method without derivatives
     plain: RungeKutta | TaylorSeries
@@ -103,8 +106,9 @@ def stepped(
 ) -> list[Any]:  # fmt: skip
     """Return the components of the state after one step as a list, computed with any kind of number.
 
-    For a :class:`WithDerivatives`, the derivatives of the new state follow: for each entry of ``method.by``, such as
-    "omega", the matrix of the derivatives by its inputs, row by row, one row for each state.
+    For a :class:`WithDerivatives`, the derivatives of the new state follow. Each entry of ``method.by`` is the name of
+    one or several inputs of the step, such as "omega" for omega_1, omega_2 and omega_3. For each entry there is a
+    matrix, row by row: a row for each state, with its derivatives with respect to these inputs.
 
     Parameters
     ----------
@@ -210,7 +214,7 @@ def derivative_inputs(rates: Program, name: str) -> tuple[tuple[str, str, str], 
 def step_signature(rates: Program, name: str, by: Sequence[str] = ()) -> Signature:
     """Return the name and the arguments of a step: t, x, p (if any), dt, and the results, ``next`` and its derivatives.
 
-    ``by`` names the inputs by which ``next`` is differentiated.
+    ``next`` is the state after the step. ``by`` names the inputs with respect to which ``next`` is differentiated.
     """
     time, state = rates.signature.argument("t"), rates.signature.argument("y")
     size = Argument(SIZE, "in", ((SIZE, "s", "size of the step"),), is_scalar=True)
@@ -224,7 +228,8 @@ def step_signature(rates: Program, name: str, by: Sequence[str] = ()) -> Signatu
 def step_program(rates: Program, method: Method, name: str) -> Program:
     """Return the program of one step, with the arguments t, x, p (if the rates have parameters), dt, next.
 
-    For a :class:`WithDerivatives`, an array of derivatives follows for each entry of ``method.by``.
+    For a :class:`WithDerivatives`, further output arrays follow: one for each entry of ``method.by``, with the
+    derivatives of ``next`` with respect to the inputs that the entry names, such as ``"omega"``.
 
     Parameters
     ----------
@@ -239,7 +244,7 @@ def step_program(rates: Program, method: Method, name: str) -> Program:
     ------
     InputError
         If the method is a Taylor series and the rates contain an operation without one, if ``method.by`` names an input
-        that the step does not have, or if a method with derivatives meets the function abs.
+        that the step does not have, or if derivatives are required and the rates contain the function abs.
     """
     signature = step_signature(rates, name, method.by if isinstance(method, WithDerivatives) else ())
     recorder = Recorder()

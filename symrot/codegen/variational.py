@@ -1,7 +1,9 @@
-"""Variational equations: the rates of a motion's states and of their derivatives by initial values and parameters.
+"""Variational equations: the rates of a motion's states and of their sensitivities.
 
-If ``dy/dt = f(t, y, p)``, the derivative S of y by a variable v obeys ``dS/dt = (df/dy) S + (df/dp) dp/dv``. Integrated
-together with y, as one system, S has the same step control as y.
+The sensitivities are the derivatives of the states with respect to initial values and parameters.
+
+If ``dy/dt = f(t, y, p)``, the derivative S of y with respect to a variable v obeys
+``dS/dt = (df/dy) S + (df/dp) dp/dv``. Integrated together with y, as one system, S has the same step control as y.
 """
 
 from collections.abc import Collection, Sequence
@@ -20,24 +22,26 @@ LEAST_ROOT = Fraction(1, 1 << 1000)
 
 
 def variational_program(rates: Program, columns: Sequence[Collection[str]], rough: bool = False) -> Program:
-    """Return the program of the rates of the states and of their derivatives by initial values and parameters.
+    """Return the program of the rates of the states and of their derivatives with respect to variables.
+
+    A variable is an initial value, or a constant on which parameters of the rates depend.
 
     Parameters
     ----------
     rates : Program
         The right-hand side ``dy = f(t, y, p)``.
     columns : sequence of collections of str
-        For each variable v of the derivatives: the names of the parameters p that depend on it. It is empty for an
-        initial value.
+        One collection for each variable v: the names of the parameters p that depend on v. The collection is empty if v
+        is an initial value.
     rough : bool
         Whether the derivative of a root such as sqrt(x**2) is zero, not undefined, at x = 0.
 
     Returns
     -------
     Program
-        Its states are y, then the derivatives of y by each variable, such as ``omega_1_by_1``, the derivative of
-        omega_1 by variable 1. Its parameters are p, then the derivatives, by each variable, of the parameters named in
-        ``columns``.
+        Its states are y, then for each variable the derivatives of y with respect to it: ``omega_1_by_1`` is the
+        derivative of omega_1 with respect to variable 1. Its parameters are p, then for each variable the derivatives
+        of the parameters that ``columns`` names for it.
 
     Raises
     ------

@@ -28,12 +28,17 @@ class Pattern(Enum):
 
 
 FieldPattern = Pattern | tuple[Pattern, ...]
-"""The patterns of a field of a torque: one pattern for a number, three for a vector, four for a quaternion."""
+"""What the equations assume about a field of a torque, an entry such as ``weight`` or ``direction`` of the scene file.
+
+It is one :class:`Pattern` for a number, a tuple of three for a vector, and of four for a quaternion.
+"""
 
 
 def component_names(name: str, pattern: FieldPattern) -> list[str]:
-    """Return the symbols' names for a torque's field: ``c``, or for a vector ``c_1, c_2, c_3``, a quaternion ``c_0`` to
-    ``c_3``.
+    """Return the names of the symbols for a field of a torque, such as ``weight`` or ``direction``.
+
+    A number ``c`` has the symbol ``c``, a vector ``c_1`` to ``c_3``, a quaternion ``c_0`` to ``c_3``. ``pattern`` shows
+    which of the three the field is: it has one :class:`Pattern` (0, 1, -1 or free), three or four.
     """
     if isinstance(pattern, Pattern):
         return [name]
@@ -65,7 +70,7 @@ class TorqueSwitch(NamedTuple):
     where: tuple[tuple[str, int], ...]
     label: str
     at_zero: int
-    choices: str = ""  # the guard with both branches of each ``where(condition, u, v)``; empty without ``where``
+    choices: str = ""  # the guard with its calls ``where(condition, u, v)``, see FormulaTorque; empty without calls
 
 
 class FieldTorque(NamedTuple):
@@ -110,7 +115,8 @@ class FormulaTorque(NamedTuple):
         Text before the names of its parameters, so that they differ from the names in other torques.
     formulas : tuple of 3 str
         The components of the torque. Functions that switch, such as sign, are replaced by modes: constants that have
-        the present values of the functions.
+        the present values of the functions. A call ``where(condition, u, v)`` is replaced by v + p*(u - v), where p is
+        1 if the condition holds, else 0; this sum needs the values of both branches.
     parameters : tuple of str
         Names of the parameters and modes in the formulas.
     frame : str
@@ -118,8 +124,9 @@ class FormulaTorque(NamedTuple):
     switches : tuple of TorqueSwitch
         The jumps and kinks of the formulas; empty if the formulas are smooth, or if the plan was made without modes.
     choices : tuple of str
-        The formulas with both branches of each ``where(condition, u, v)``. The field is empty if both branches may
-        always be evaluated; a branch such as ``1/omega_1`` may only be evaluated where its condition holds.
+        The formulas in which calls ``where(condition, u, v)`` are not replaced by sums, because a branch such as
+        ``1/omega_1`` may only be evaluated where it applies. The equations are made from these formulas, with the
+        branch that applies in place of each call. Empty if both branches of all calls may always be evaluated.
     held : tuple of str
         Modes whose guards (arguments of the functions) stay at zero while the motion slides.
     """

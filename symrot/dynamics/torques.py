@@ -237,7 +237,10 @@ def field_value(name: str, pattern: FieldPattern) -> Any:
 
 
 def torque_of_potential(law: TorqueLaw) -> Matrix:
-    """Return the torque, body components, that a law's potential exerts: minus its derivatives by small rotations."""
+    """Return the torque, body components, that a law's potential exerts.
+
+    It is minus the derivatives of the potential with respect to small rotations about the body axes.
+    """
     # compared with the law's own formula, to prove that both agree
     rates = quaternion_rates("body") * Matrix(symbols.omega_b)
     gradient = Matrix([sympy.S.Zero if law.potential is None else law.potential]).jacobian(symbols.quaternion)

@@ -1,4 +1,4 @@
-"""Exact decision whether two formulas are equal at all real points where both are defined."""
+"""Exact decision of whether two formulas are equal at all real points where both are defined."""
 
 from importlib import import_module
 from typing import Any

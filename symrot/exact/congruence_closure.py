@@ -53,10 +53,11 @@ def proof_by_congruence(
 def _equal_pairs(
     names: Sequence[Expr], hypotheses: Sequence[Expr], domain: Sequence[Expr]
 ) -> Iterator[tuple[Expr, Expr, tuple[FormulaRing, ...]]]:
-    """Yield (f, h, rings) for equal expressions f and h among ``names``, which are inverse functions and logarithms.
+    """Yield (f, h, rings) for expressions f and h that are proven equal and may replace each other.
 
-    f is one of them, and h is another one, g, or ``pi/2 - g``. ``rings`` are all polynomial rings that the proof of
-    ``f = h`` uses.
+    ``names`` are inverse functions and logarithms. f is one of them; h is another one, g, or the expression
+    ``pi/2 - g``. ``rings`` are all polynomial rings that the proof of ``f = h`` uses. ``hypotheses`` are expressions
+    that are zero, and ``domain`` are formulas that are nonnegative, wherever f and h are compared.
     """
     for first, second in combinations(names, 2):
         for other in (first, pi / 2 - first):

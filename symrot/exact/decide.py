@@ -1,4 +1,4 @@
-"""Decision whether two formulas are equal: the normal form of their difference, and a verdict with its evidence.
+"""Decides whether two formulas are equal: the normal form of their difference, and a verdict with its evidence.
 
 Formulas in scope are rational functions of symbols, exponentials, unit vectors, and sines and cosines of angles. Their
 normal form is zero if and only if they are zero at all real points (``docs/exact_decisions.md``, sections 1 to 3).

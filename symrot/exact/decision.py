@@ -93,8 +93,9 @@ class Case(ABC):
         The rings, besides ``ring``, that the function :func:`subtract` used to prove single entries equal. A stage that
         proves the other entries passes these rings, and the rings of its own proofs, to :meth:`rely_on`.
     rings : tuple of FormulaRing
-        The rings that were last passed to :meth:`rely_on`: once all entries are proven, those of all proofs, besides
-        ``ring``. Their divisors, assumed to be nonzero, are among the ``conditions``.
+        The rings that were last passed to :meth:`rely_on`. When all entries are proven, these are the rings of all the
+        proofs, without ``ring``. The divisors in these rings are assumed to be nonzero; this assumption is among the
+        ``conditions``.
     conditions : tuple
         Relations under which the verdict holds.
     counterexample : Counterexample or None

@@ -32,10 +32,12 @@ _NAMES = (*INVERSE, log)
 
 @dataclass(frozen=True)
 class Lift:
-    """Polynomials, ``numerators`` in ``ring``; if all are zero, a sum of inverse functions or of logarithms is zero.
+    """A sufficient condition for a sum of inverse functions or of logarithms to be zero: some polynomials are zero.
 
-    For example, ``D = asin(x) + acos(x) - pi/2`` lies between -2 pi and 2 pi, and is zero if ``sin(D)`` and
-    ``cos(D) - 1`` are zero.
+    The polynomials are ``numerators``, in the polynomial ring ``ring``.
+
+    Example: ``D = asin(x) + acos(x) - pi/2`` lies between -2 pi and 2 pi, and is zero if ``sin(D)`` and ``cos(D) - 1``
+    are zero.
     """
 
     ring: FormulaRing
@@ -69,7 +71,9 @@ def proof(ring: FormulaRing, numerator: PolyElement) -> tuple[FormulaRing, ...] 
 def lifts(ring: FormulaRing, numerator: PolyElement, only_zero: bool = False) -> Iterator[Lift]:
     """Yield conditions, each of which is sufficient for the polynomial ``numerator`` to be zero.
 
-    With ``only_zero``, no condition comes from factors that are clearly not zero in double precision.
+    Each condition makes one factor of ``numerator`` zero, a sum of inverse functions or of logarithms.
+
+    With ``only_zero``, factors whose values in double precision are clearly not zero are skipped.
     """
     places = {number for leaf, number in ring.symbols.items() if isinstance(leaf, _NAMES)}
     if not places or len(numerator) > MOST_TERMS or not any(mono[n] for mono in numerator for n in places):
@@ -200,8 +204,9 @@ def _principal_sum(ring: FormulaRing, factor: PolyElement, names: dict[int, Expr
 
 
 def _ends_of_argument(inner: Expr, low: Expr, high: Expr) -> tuple[Expr, ...] | None:
-    """Return formulas that are nonnegative where the asin, acos or atan ``inner`` lies in [low, high]; None if it never
-    does.
+    """Return formulas that are nonnegative exactly where the asin, acos or atan ``inner`` lies in [low, high].
+
+    The result is None if ``inner`` never lies there.
     """
     function, least, most = _PRINCIPAL[type(inner)]
     if high < least or low > most:

@@ -36,6 +36,8 @@ def with_plain_arguments(
     """Return the formulas with all arguments of functions in normal form, and the rings in which this was computed.
 
     ``sin(sin(x)^2 + cos(x)^2)`` becomes ``sin(1)``. Arguments of functions without a definition, such as f(t), stay.
+    ``hypotheses`` are expressions that are zero, such as ``q0^2 + q1^2 + q2^2 + q3^2 - 1``; ``domain`` are formulas
+    that are nonnegative wherever ``formulas`` are defined. Both serve to shorten the arguments.
     """
     formulas, rings = list(formulas), []
     for level in range(MOST_LEVELS):
@@ -75,7 +77,8 @@ def proof_by_arguments(
 ) -> tuple[FormulaRing, ...] | None:
     """Prove ``left = right`` with all arguments of functions in normal form.
 
-    Return the polynomial rings that the proof uses, or None if no proof is found.
+    Return the polynomial rings that the proof uses, or None if no proof is found. ``hypotheses`` are expressions that
+    are zero, and ``domain`` are formulas that are nonnegative wherever both sides are defined.
     """
     (shorter, other), rings = with_plain_arguments([left, right], hypotheses, domain)
     # no argument changes: the proof was tried before

@@ -1,4 +1,4 @@
-"""SymPy values as text in the language of claims, such as ``diff(phi(t), t)``."""
+"""SymPy values as text in the language of claims, such as ``diff(phi(t), t) == omega``."""
 
 from typing import Any
 
@@ -27,8 +27,9 @@ _PRINTER = _Printer()
 
 
 def as_text(value: Any) -> str:
-    """Return a SymPy value as text in the language of claims, which the reader of claims can read back.
+    """Return a SymPy value as text in the language of claims, which symrot's parser of claims reads back.
 
-    A derivative is written ``diff(phi(t), t)``.
+    A claim is a text such as ``sin(2*x) == 2*sin(x)*cos(x)``, which states that two formulas are equal. A derivative is
+    written ``diff(phi(t), t)``.
     """
     return str(_PRINTER.doprint(value))

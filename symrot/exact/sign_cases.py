@@ -92,11 +92,11 @@ def _constraints(ring: FormulaRing, insides: dict[int, PolyElement]) -> Iterator
 def _consistent(
     ring: FormulaRing, insides: dict[int, PolyElement], constraints: Sequence[Constraint]
 ) -> list[Constraint]:
-    """Return some of ``constraints`` on the signs of f in ``|f|``, such that at each point some signs satisfy all.
+    """Return a subset of ``constraints`` on the signs of f in ``|f|`` that can be satisfied together at every point.
 
-    At a point where f is zero, ``|f| = s f`` holds for both signs s. The sign can then be chosen so that one constraint
-    on it is satisfied, but perhaps not two. So a constraint is left out if an earlier one contains the same f, and this
-    f may be zero. ``insides`` maps the variable of each ``|f|`` to f.
+    ``insides`` maps the variable of each ``|f|`` to f. At a point where f is zero, ``|f| = s f`` holds for both signs
+    s. The sign can then be chosen so that one constraint on it is satisfied, but perhaps not two. So a constraint is
+    left out if it shares an f that may be zero with a constraint that was chosen before.
     """
     # formulas are defined only where a divisor is not zero
     divisors = {factor for poly in ring.ratios.factors for factor, _ in factor_list(poly)[1]}

@@ -21,10 +21,13 @@ MOST_TESTS = 50_000_000
 """Largest number of tests of a triangle against a line; it limits the number of lines."""
 
 MOST_PAIRS = 5_000_000
-"""Largest number of pairs of triangles, overlapping along one axis, that are searched for crossings."""
+"""Largest number of pairs of triangles that are searched for crossings; if there are more, none is searched.
+
+The triangles of a pair overlap along one coordinate axis.
+"""
 
 MOST_SEARCHED = 200_000
-"""Largest number of triangles of a mesh in which all pairs of crossing triangles are searched."""
+"""Largest number of triangles of a mesh whose pairs of triangles are searched for crossings; larger meshes are not."""
 
 MOST_ANGLES = 5_000_000
 """Largest number of solid angles that are computed, one for each triangle and test point.
@@ -188,22 +191,59 @@ def _search_pairs(surface: Surface, boxes: _Boxes, where: str) -> Floats | None:
         if other != axis:
             overlap &= (low[other, i] <= high[other, j]) & (low[other, j] <= high[other, i])
     i, j = i[overlap], j[overlap]
-    # A proper crossing: an edge passes through the interior of a triangle without a common vertex. An edge that passes
-    # through the boundary of a triangle, up to rounding errors, may belong to bodies that only touch.
-    shared = (surface.triangles[i][:, :, None] == surface.triangles[j][:, None, :]).any(axis=(1, 2))
-    i, j = i[~shared], j[~shared]
+    # Triangles with a common edge cannot cross; those with one common vertex can.
+    shared = (surface.triangles[i][:, :, None] == surface.triangles[j][:, None, :]).sum(axis=(1, 2))
+    i, j = i[shared < 2], j[shared < 2]
+    crossing = _cross_along_a_line(surface, i, j)
+    if crossing is not None:
+        _refuse_crossing(surface, crossing, where)
+    # An edge that passes through the interior of a triangle crosses it. An edge that passes through the boundary of a
+    # triangle, up to rounding errors, may belong to bodies that only touch.
     contacts = []
     for one, other in ((i, j), (j, i)):
         for k in range(3):
-            crossings, points = _pierces(surface, one, other, k)
-            if crossings is not None:
-                point = ", ".join(f"{x:.6g}" for x in surface.vertices[surface.triangles[crossings]].mean(axis=0))
-                raise InputError(
-                    f"{where}: expected a surface that does not cross itself, got triangles that cross near ({point}); "
-                    "join the parts by a Boolean union in your mesh program"
-                )
+            crossing, points = _pierces(surface, one, other, k)
+            if crossing is not None:
+                _refuse_crossing(surface, crossing, where)
             contacts.append(points)
     return np.unique(np.concatenate(contacts), axis=0)
+
+
+def _refuse_crossing(surface: Surface, triangle: int, where: str) -> None:
+    point = ", ".join(f"{x:.6g}" for x in surface.vertices[surface.triangles[triangle]].mean(axis=0))
+    raise InputError(
+        f"{where}: expected a surface that does not cross itself, got triangles that cross near ({point}); "
+        "join the parts by a Boolean union in your mesh program"
+    )
+
+
+def _cross_along_a_line(surface: Surface, i: NDArray[np.int64], j: NDArray[np.int64]) -> int | None:
+    """Return the first triangle of ``i`` that crosses its partner in ``j``, or None.
+
+    Triangles cross if the line in which their planes meet passes through the interiors of both, and if the intervals
+    inside the two triangles overlap by more than a point, as far as rounding errors allow to decide.
+    """
+    # Source: Guigue & Devillers, J. Graphics Tools 8 (2003) 25: each end of an interval is on an edge that leaves the
+    # corner alone on its side of the other plane, and four corners tell which of two ends comes first on the line.
+    pairs = surface.triangles[i], surface.triangles[j]
+    sides = [
+        np.stack([_sides(surface, o[:, 0], o[:, 1], o[:, 2], x) for x in own.T], axis=1)
+        for own, o in (pairs, pairs[::-1])
+    ]
+    split = np.flatnonzero(np.logical_and(*((each.min(axis=1) < 0) & (each.max(axis=1) > 0) for each in sides)))
+    corners, above = [], []
+    for own, each in zip(pairs, sides, strict=True):
+        own, each = own[split], each[split]
+        is_above = (each > 0).sum(axis=1) == 1
+        alone = np.where(is_above, each.argmax(axis=1), each.argmin(axis=1))
+        corners.append([own[np.arange(len(own)), (alone + k) % 3] for k in range(3)])
+        above.append(is_above)
+    (p1, q1, r1), (p2, q2, r2) = corners
+    # the orientation in which the lonely corner of the other triangle is above
+    q1, r1 = np.where(above[1], q1, r1), np.where(above[1], r1, q1)
+    q2, r2 = np.where(above[0], q2, r2), np.where(above[0], r2, q2)
+    overlap = (_sides(surface, p1, q1, p2, q2) < 0) & (_sides(surface, p1, r1, r2, p2) < 0)
+    return int(i[split[int(overlap.argmax())]]) if overlap.any() else None
 
 
 def _pierces(

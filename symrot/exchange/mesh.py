@@ -145,7 +145,7 @@ def polyhedron(surface: Surface, name: str, where: str, mass: Any, density: Any,
         amount, polynomial = _positive(mass, f"{where}: mass", "a mass in kg"), parse("1")
     else:
         amount, polynomial = None, _density(density, f"{where}: density")
-    degree = _degree(polynomial, density, unit, where)
+    degree = _degree(polynomial, density, where)
     work = len(surface.triangles) * len(exponents(degree))
     result = None
     if work > MOST_EXACT:
@@ -197,9 +197,13 @@ def _density(density: Any, where: str) -> Any:
     return ("number", _positive(density, where, "a density in kg/m^3"))
 
 
-def _degree(node: Any, source: object, unit: Fraction, where: str) -> int:
-    """Return the highest degree of the monomials to be integrated for the inertia: the degree of the density plus 2."""
-    axes = {name: generator(name) * unit for name in "xyz"}
+def _degree(node: Any, source: object, where: str) -> int:
+    """Return the degree of the density plus 2: the highest degree of the monomials to be integrated for the inertia.
+
+    ``node`` is the density, a number or a polynomial in x, y, z. ``source`` is the density as the user wrote it, and
+    ``where`` the name of the mesh, for error messages.
+    """
+    axes = {name: generator(name) for name in "xyz"}
     powers = density_polynomial(node, axes, source, f"{where}: density").collect(["x", "y", "z"])
     return 2 + max((sum(item) for item in powers), default=0)
 
@@ -207,7 +211,9 @@ def _degree(node: Any, source: object, unit: Fraction, where: str) -> int:
 def _integrated(moments: VolumeMoments, node: Any, source: object, unit: Fraction, where: str) -> _Body:
     """Return mass, first and second moments (kg, kg m, kg m^2) of a mesh body with the density formula ``node``.
 
-    They follow from ``moments``, the integrals of monomials of the coordinates over the mesh.
+    They follow from ``moments``, the integrals of monomials of the coordinates over the mesh. ``source`` is the density
+    as the user wrote it, and ``where`` the name of the mesh, for error messages. ``unit`` is the length, m, of one unit
+    of the coordinates in the mesh.
     """
     # local coordinates start from a centre and are in the file's unit of length
     axes = {

@@ -1,4 +1,4 @@
-"""Tests of mesh files before trimesh reads them: parts that trimesh would lose in silence are refused."""
+"""Tests of mesh files before trimesh reads them: parts that trimesh would silently drop are refused."""
 
 import json
 import re

@@ -1,7 +1,7 @@
 """Fast reading of OBJ files of the common form: lines of vertices and of triangles, each line like the others.
 
-Other files, such as those with polygons of more than three corners, or with lines that a backslash continues on the
-next line, are left to trimesh, which reads each line by itself.
+All other files are left to trimesh, which reads each line by itself: for example, files with polygons of more than
+three corners, or with a backslash at the end of a line, which joins it to the next line.
 """
 
 import re
@@ -61,9 +61,10 @@ def read_plain_obj(content: bytes) -> tuple[NDArray[np.float64], NDArray[np.int6
 
 
 def _numbers(lines: NDArray[np.uint8], letter: bytes, kind: Any) -> NDArray[Any] | None:
-    """Return the numbers of lines that start with ``letter``, with a row for each of the three words of a line.
+    """Return the numbers in lines that start with ``letter``, one row for each of the three words after the letter.
 
-    ``f 1/4 3/1 2/2`` gives the rows (1, 4), (3, 1), (2, 2). None unless all lines have the same form, and only numbers.
+    ``f 1/4 3/1 2/2`` gives the rows (1, 4), (3, 1), (2, 2). The result is None if the lines differ in form, or if a
+    word contains anything but numbers.
     """
     separators = lines[(lines == _SPACE) | (lines == _NEWLINE) | (lines == _SLASH)]
     size = int((separators == _NEWLINE).argmax()) + 1 if len(separators) else 1

@@ -54,7 +54,8 @@ BARS = ".sf path.bar{stroke-width:5}"  # for pictures with rods
 def _narrow(width: float) -> str:
     """Return CSS that enlarges the letters of a picture where it is shown as narrow as on a phone.
 
-    It is empty if the picture, which is ``width`` CSS pixels wide, has legible letters there.
+    ``width`` is the full width of the picture, CSS pixels. The result is empty if the letters of the picture are
+    legible on a phone without being enlarged.
     """
     factor = LEAST / 13.0 * width / PHONE
     if factor < 1.1:

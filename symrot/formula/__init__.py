@@ -1,1 +1,1 @@
-"""Formulas as trees, exact numbers, straight-line programs, and functions with jumps. Standard library only."""
+"""Formulas as trees, exact numbers, straight-line programs, functions with jumps; mpmath where needed."""

@@ -32,19 +32,19 @@ def _transcendental(name: str, *arguments: Fraction) -> Fraction:
         If an exponential is far beyond the range of a double.
     """
     # imported only if a formula needs it
-    import mpmath
+    from symrot.formula.precision import bits, mp
 
     sizes = [max(x.numerator.bit_length(), x.denominator.bit_length()) for x in arguments]
     if name in ("exp", "sinh", "cosh") and abs(arguments[0]) > MOST_BITS:
         if name == "exp" and arguments[0] < 0:
             return Fraction(1, 1 << MOST_BITS)
         raise OverflowError(f"{name} of {number.show(arguments[0])} exceeds the range of a double")
-    with mpmath.workprec(number.BITS + GUARD_BITS + min(max(sizes), MOST_BITS)):  # 1 + a tiny number keeps its digits
-        values = [mpmath.mpf(x.numerator) / x.denominator for x in arguments]
+    with bits(number.BITS + GUARD_BITS + min(max(sizes), MOST_BITS)):  # 1 + a tiny number keeps its digits
+        values = [mp.mpf(x.numerator) / x.denominator for x in arguments]
         result: Any = None
         if not (name == "atan2" and not any(arguments)) and not (name == "log" and not arguments[0]):
-            result = getattr(mpmath, name)(*values)
-    if not isinstance(result, mpmath.mpf) or not mpmath.isfinite(result):
+            result = getattr(mp, name)(*values)
+    if not isinstance(result, mp.mpf) or not mp.isfinite(result):
         listed = ", ".join(map(number.show, arguments))
         raise ValueError(f"{name}({listed}) has no real value")
     sign, mantissa, exponent, _ = result._mpf_

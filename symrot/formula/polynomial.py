@@ -103,7 +103,7 @@ class Polynomial:
         return {exponents: Polynomial(part) for exponents, part in parts.items()}
 
     def derivative(self, name: str) -> "Polynomial":
-        """Return the partial derivative by the coordinate or angle ``name``."""
+        """Return the partial derivative with respect to the coordinate or angle ``name``."""
         # the generators for the cosine and sine of an angle depend on it too
         inner = ((generator(name), constant(1)), (cosine(name), -sine(name)), (sine(name), cosine(name)))
         total = constant(0)

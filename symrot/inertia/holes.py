@@ -26,12 +26,13 @@ __all__ = ["DensePart", "PointMass", "dense_part", "doubtful_holes", "pose", "re
 ROUNDING = 1e-9
 """Length by which a hole (a part that is subtracted) may reach out of the other parts, relative to the hole's radius.
 
-The radius is that of a ball around the hole. Rounded dimensions may make an exact fit reach out so little."""
+The radius is that of a ball around the hole. Because of rounded dimensions, a hole that fits exactly may reach out by
+this much."""
 
 DENSITY = 0.01
-"""Largest accepted excess of the density of a hole over that of the parts around it, relative to the parts' density.
+"""Largest accepted excess of the density of a hole over that of the parts around it, as a fraction of the density.
 
-Users state rounded masses, so that equal densities may differ by so much."""
+Users state rounded masses, so that densities that should be equal may differ by this much."""
 
 SHARES = (0.001, 0.25, 0.5, 0.75, 0.999)  # test points are at these fractions of the ranges of a hole's coordinates
 INWARDS = 1e-6  # fraction of the way from the end of a hole to its middle, at which a test point lies
@@ -85,9 +86,10 @@ def pose(at: Sequence[Any], rotation: Sequence[Sequence[Any]]) -> hulls.Pose:
 def dense_part(
     shape: str, dimensions: Mapping[str, Any], place: hulls.Pose, density: Fraction | Node, subtract: bool
 ) -> DensePart:
-    """Return a part of a body with its exact ``dimensions``, and with a shape in doubles for the tests of holes.
+    """Return a part of a body: its exact ``dimensions``, and its shape in doubles, with which holes are tested.
 
-    ``dimensions`` maps names to lengths or, for the corners of a tetrahedron, to a tuple of points.
+    The tests show whether each hole lies within the other parts (:func:`doubtful_holes`). ``dimensions`` maps names to
+    lengths or, for the corners of a tetrahedron, to a tuple of points.
     """
     rounded = {
         name: tuple(tuple(map(float, point)) for point in value) if isinstance(value, tuple) else float(value)
@@ -186,7 +188,11 @@ def _is_covered(hole: DensePart, near: Sequence[DensePart], radius: float) -> bo
 
 
 def _crosses(plane: tuple[Vec, float], points: Sequence[Vec], rounding: float) -> bool:
-    """Return whether there are points on both sides of a plane, given by a unit normal and a distance."""
+    """Return whether there are points on both sides of a plane.
+
+    ``plane`` is the unit normal of the plane and its distance from the origin. A point closer to the plane than
+    ``rounding``, m, counts as a point on the plane.
+    """
     normal, height = plane
     heights = [dot(point, normal) - height for point in points]
     return bool(heights) and min(heights) < -rounding and max(heights) > rounding
@@ -249,11 +255,15 @@ def _pieces(hole: hulls.Solid3, hosts: Sequence[hulls.Solid3]) -> list[hulls.Sol
 
 
 def _refuse_negative(hole: DensePart, near: Sequence[DensePart], radius: float, name: str) -> None:
-    """Raise InputError if the density of the body is negative at a test point of a hole."""
+    """Raise InputError if the density of the body is negative at a test point of a hole.
+
+    The density of the body is the sum of the densities of the parts at the point, less those of the holes. ``name`` is
+    the place of the hole in the scene, for the message; the other arguments are those of :func:`_is_within`.
+    """
     rounding = ROUNDING * radius
     strict = -rounding if hole.kind == "solid" else rounding
     points = 0
-    for point in _test_points(hole, near, radius):
+    for point in _test_points(hole, near):
         points += len(near) + 1
         if points > MOST_POINTS:
             return
@@ -276,8 +286,13 @@ def _refuse_negative(hole: DensePart, near: Sequence[DensePart], radius: float, 
             raise InputError(f"{name}: expected a hole within the other parts, got {fault}")
 
 
-def _test_points(hole: DensePart, near: Sequence[DensePart], radius: float) -> Iterator[Vec]:
-    """Yield points of a hole in the axes of the body: near its ends along axes and normals of faces, then a lattice."""
+def _test_points(hole: DensePart, near: Sequence[DensePart]) -> Iterator[Vec]:
+    """Yield points of a hole, in the axes of the body, at which the density of the body is tested.
+
+    ``near`` are the other parts that may touch the hole. The first points are close to the ends of the hole along the
+    axes and the face normals of the hole and of these parts, and toward and away from the centres of these parts. The
+    others are a lattice in the hole.
+    """
     middle = hulls.center(hole.solid)
     normals = [n for part in (hole, *near) for n in hulls.directions(part.solid)]
     for part in near:

@@ -69,7 +69,10 @@ class Pose(NamedTuple):
 
 @dataclass(frozen=True)
 class Solid3:
-    """A shape of the table of shapes, with its dimensions as doubles, and its position and rotation in the body."""
+    """A shape, by its name in :data:`symrot.inertia.shapes.SHAPES`, with its dimensions as doubles and its pose.
+
+    The pose is the position and the rotation of the shape in the body.
+    """
 
     shape: str
     dimensions: Dimensions
@@ -77,7 +80,7 @@ class Solid3:
 
     @cached_property
     def hull(self) -> "list[Piece]":
-        """The pieces whose convex hull is that of the shape, in the axes of the body."""
+        """The disks, domes and ellipsoids (pieces) whose convex hull is that of the shape, in the axes of the body."""
         return [_moved(piece, self.pose) for piece in _HULLS[self.shape](self.dimensions)]
 
 

@@ -48,7 +48,7 @@ class Coordinate(NamedTuple):
 
 
 class Shape(NamedTuple):
-    """A shape of the table: dimensions, conditions such as ``inner < outer``, axes, and map to positions."""
+    """A shape of the table :data:`SHAPES`: dimensions, conditions such as ``inner < outer``, axes, map to positions."""
 
     name: str
     kind: str  # a key of DENSITY_UNITS

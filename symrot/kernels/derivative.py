@@ -15,7 +15,7 @@ from symrot.kernels.removable import DERIVATIVES, copysign, select_ge, sinc
 __all__ = ["Derivatives", "exact_derivative"]
 
 Named = tuple[tuple[Symbol, Expr], ...]
-Slope = Callable[..., tuple[Expr, ...]]  # arguments of a function -> its derivative by each argument
+Slope = Callable[..., tuple[Expr, ...]]  # arguments of a function -> its partial derivatives
 
 _SLOPES: Mapping[str, Slope] = {
     **{name: lambda x, slope=slope: (slope(x),) for name, slope in DERIVATIVES.items()},
@@ -24,7 +24,7 @@ _SLOPES: Mapping[str, Slope] = {
 
 
 def exact_derivative(expr: Expr, variable: Symbol) -> Expr:
-    """Return the derivative of an expression by a symbol; other symbols are constants.
+    """Return the derivative of an expression with respect to a symbol; other symbols are constants.
 
     A choice between two formulas has the derivative of the chosen formula.
 
@@ -110,7 +110,7 @@ class Derivatives:
         self.slopes: dict[tuple[Symbol, Symbol], Expr] = {}
 
     def of(self, expr: Expr, variable: Symbol, value: Expr | None = None) -> Expr:
-        """Return the derivative of ``expr`` by the input ``variable``.
+        """Return the derivative of ``expr`` with respect to the input ``variable``.
 
         The result may contain the symbols of the quantities that the constructor received and of the derivatives in
         ``named``. ``value`` is the symbol of the quantity whose formula is ``expr``; None if ``expr`` has no symbol.
@@ -143,7 +143,10 @@ class Derivatives:
         return self.slopes[key]
 
     def _by_named(self, expr: Expr, symbol: Symbol, slope: Expr) -> Expr:
-        """Return the derivative of ``expr`` by the named quantity ``symbol``, times ``slope``, that of the quantity."""
+        """Return one term of the chain rule: d ``expr``/d ``symbol``, times ``slope``.
+
+        ``symbol`` stands for a named quantity; ``slope`` is the derivative of this quantity with respect to the input.
+        """
         partial = exact_derivative(expr, symbol)
         if symbol in self.roots:
             partial = _with_sinc(expr, symbol, partial)

@@ -1,7 +1,7 @@
-"""Kernels with derivatives: a kernel of the library whose outputs are followed by their derivatives by some inputs.
+"""Kernels with derivatives: the outputs of a kernel, then their derivatives with respect to some of its inputs.
 
-Such a kernel has a name of its own, ``euler_zxz_body_rates_by_angles_by_omega``, and is a kernel like any other:
-printed, certified, bounded and audited by its name.
+Such a kernel has a name of its own, ``euler_zxz_body_rates_by_angles_by_omega``. It is a kernel like any other: under
+this name its code is printed, its formulas are proven, and its rounding errors are bounded.
 """
 
 from collections.abc import Sequence
@@ -23,7 +23,7 @@ BY = "_by_"
 
 
 def jacobian_name(kernel: str, variables: Sequence[str]) -> str:
-    """Return the name of ``kernel`` with derivatives by the inputs ``variables``, such as ``quaternion_dcm_by_q``."""
+    """Return the name of ``kernel`` with derivatives with respect to ``variables``, such as ``quaternion_dcm_by_q``."""
     return BY.join((kernel, *variables))
 
 
@@ -40,17 +40,20 @@ def unit_of_quotient(above: str, below: str) -> str:
 
 
 def jacobian_argument(target: Argument, name: str, variables: Sequence[tuple[str, str, str]]) -> Argument:
-    """Return the output array of the derivatives of ``target`` by components of the input ``name``, row by row."""
+    """Return the output array of the derivatives of ``target`` with respect to components of the input ``name``.
+
+    ``variables`` has (name, unit, meaning) of each component. The array has one row for each component of ``target``,
+    and is stored row by row.
+    """
     components = tuple(
         (f"{output}{BY}{variable}", unit_of_quotient(unit, by), f"derivative of {target.name} by {name}")
-        # one row per component of the output; variables are (name, unit, meaning)
         for (output, unit, _), (variable, by, _) in product(target.components, variables)
     )
     return Argument(f"{target.name}{BY}{name}", "out", components)
 
 
 def jacobian_kernel(kernel: Definition, variables: Sequence[str]) -> Definition:
-    """Return a kernel that computes the outputs of a kernel and their derivatives by some of its inputs.
+    """Return a kernel that computes the outputs of ``kernel`` and their derivatives with respect to some of its inputs.
 
     Parameters
     ----------
@@ -120,8 +123,10 @@ def _components(kernel: Definition, name: str) -> tuple[tuple[str, str, str], ..
 
 
 def _laws(kernel: Definition, chosen: dict[str, tuple[tuple[str, str, str], ...]]) -> tuple[Law, ...]:
-    """Return the laws (provable identities) of a kernel with derivatives: those of ``kernel``, and one for the
-    derivatives by each input.
+    """Return the laws (provable identities) of a kernel with derivatives.
+
+    These are the laws of ``kernel`` and one law for each input: the derivatives with respect to it are those of the
+    formulas of the outputs. ``chosen`` maps each input to (name, unit, meaning) of its components.
     """
     symbols, laws = _symbols(kernel), list(kernel.laws())
     roots = {symbol: value for symbol, value in kernel.named if value.is_Pow and value.exp == Rational(1, 2)}
@@ -142,7 +147,7 @@ def _laws(kernel: Definition, chosen: dict[str, tuple[tuple[str, str, str], ...]
 
 
 def _slope(formula: Expr, variable: Symbol, roots: dict[Symbol, Expr]) -> Expr:
-    """Return the derivative of ``formula`` by ``variable``.
+    """Return the derivative of ``formula`` with respect to ``variable``.
 
     ``roots`` maps symbols in the formula to the square roots that they stand for.
     """

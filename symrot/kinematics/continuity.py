@@ -45,11 +45,11 @@ def unwrap_euler(angles: Any, sequence: str, locked: Any = None) -> Array:
     Notes
     -----
     Each attitude has two sets of angles, apart from multiples of 2 pi: a proper sequence also has ``(q1 + pi, -q2, q3 +
-    pi)``, a Tait-Bryan sequence ``(q1 + pi, pi - q2, q3 + pi)``. At each sample the function chooses the set that is
-    closer to the set chosen at the sample before. One comparison for each pair of neighbouring samples suffices: the
-    set of the earlier sample in ``angles`` is compared with both sets of the later sample. If the set of the later
-    sample in ``angles`` is closer, the choice stays as it is: the sets in ``angles``, or the second sets. Otherwise the
-    choice changes between the two samples.
+    pi)``, a Tait-Bryan sequence ``(q1 + pi, pi - q2, q3 + pi)``. Call the set in ``angles`` the given
+    set, and the other one the second set. At each sample, the function chooses the set that is closer to the set chosen
+    at the sample before. One comparison for each pair of neighbouring samples suffices: the given set of the earlier
+    sample is compared with both sets of the later sample. If the given set of the later sample is closer, the function
+    chooses the same kind of set, given or second, at both samples. Otherwise it chooses different kinds.
     """
     (first, _, last), _, _, _ = sequence_axes(sequence)
     angles = np.array(array_of(angles, 3, what=f"a set of {sequence} angles"))

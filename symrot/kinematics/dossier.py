@@ -67,8 +67,9 @@ class SingularityDossier:
     regular_sequences : tuple of str
         Sequences that are regular at every attitude where this sequence locks.
     partly_regular : dict of str to Set
-        Sequences that lock at only some of the attitudes at which this sequence locks. Such an attitude depends on one
-        angle, besides the middle angle of gimbal lock: on phi, with psi = 0, for an intrinsic sequence; on psi, with
+        Sequences that lock at only some of the attitudes at which this sequence locks, each with the set of these
+        attitudes. At gimbal lock, the middle angle is fixed and only the sum or difference of phi and psi matters, so
+        that one number describes the attitude: phi, rad, with psi = 0, for an intrinsic sequence; psi, rad, with
         phi = 0, for an extrinsic one. The set contains the values of this angle at which the other sequence locks.
     singular_sequences : tuple of str
         Sequences that lock wherever this sequence locks.

@@ -282,9 +282,9 @@ def sequences_at_lock(sequence: str) -> dict[str, Set]:
     """Return a map from each other Euler sequence to the attitudes at which both sequences are in gimbal lock.
 
     At gimbal lock of ``sequence``, an attitude depends only on the sum or difference of the first and the third angle.
-    So the third angle of ``sequence`` is set to zero, and the first angle, in rad, describes the attitude; for an
-    extrinsic sequence, the first angle is set to zero and the third describes the attitude. The map has the set of
-    these values at which the other sequence is in gimbal lock too; the set may be empty.
+    So one angle, in rad, describes the attitude: for an intrinsic sequence the first angle, with the third set to zero;
+    for an extrinsic sequence the third angle, with the first set to zero. For each other sequence, the map has the set
+    of the values of this angle at which the other sequence is in gimbal lock too. The set may be empty.
     """
     left, _, _ = factors(sequence)
     # in gimbal lock only the sum or difference of the outer angles matters, so one of them is zero

@@ -75,7 +75,8 @@ def _jacobian_function(frame: str) -> Callable[[Expr], Expr]:
 
 
 @cache
-def _coefficients(which: str) -> tuple[Expr, Expr, Expr]:
+def _coefficients(name: str) -> tuple[Expr, Expr, Expr]:
+    """Return c0, c1, c2 of ``f(K) = c0 + c1 K + c2 K^2`` for the function f with this name (:func:`_combine`)."""
     functions: dict[str, Callable[[Expr], Expr]] = {
         "dcm": exp,
         "body": _jacobian_function("body"),
@@ -83,14 +84,18 @@ def _coefficients(which: str) -> tuple[Expr, Expr, Expr]:
         "body inverse": lambda z: exp(z / 2) / _stretch(z),
         "space inverse": lambda z: exp(-z / 2) / _stretch(z),
     }
-    return function_of_skew(functions[which], Integer(1), _size)
+    return function_of_skew(functions[name], Integer(1), _size)
 
 
-def _combine(which: str, vector: Sequence[Expr], size: Expr) -> ImmutableMatrix:
-    """Return ``f(K)`` for the function f named ``which`` and the skew matrix K of a vector of length ``size``."""
+def _combine(name: str, vector: Sequence[Expr], size: Expr) -> ImmutableMatrix:
+    """Return ``f(K)`` for the function f called ``name`` and the skew matrix K of a rotation vector of length ``size``.
+
+    For "dcm", f(K) is the direction cosine matrix exp(K). For "body" and "space", it is the Jacobian B with
+    ``omega = B dv/dt`` in body or space components; for "body inverse" and "space inverse", the inverse of B.
+    """
     if size.is_zero:  # each of these functions is 1 at zero
         return ImmutableMatrix(eye(3))
-    c0, c1, c2 = (c.xreplace({_size: size}) for c in _coefficients(which))
+    c0, c1, c2 = (c.xreplace({_size: size}) for c in _coefficients(name))
     matrix = skew(vector)
     return ImmutableMatrix(c0 * eye(3) + c1 * matrix + c2 * matrix**2)
 

@@ -1,8 +1,9 @@
 """The tree of a LaTeX formula: how the formula is written, without its meaning.
 
 Operators, relations and brackets such as ``(`` are separate tokens of a row, because only the meaning tells which
-brackets match. Every node has ``start``, its position in the source, and, like a token, ``text`` and ``kind``, of which
-one or both may be empty.
+brackets match. A node is a token or an instance of a class of this module. Every node has three attributes: its
+position in the source (``start``) and two texts, ``kind`` and ``text``, which may be empty. So code can compare the
+texts of any node without asking for its class.
 """
 
 from dataclasses import dataclass

@@ -49,8 +49,8 @@ class Number:
     name : str
         Name of the number, LaTeX.
     step : str
-        The first words of the step's claim. The formula is the right side of the step's equation: the expression
-        displayed on the page, or the right side that the step proves if the page displays a text.
+        The first words of the step's claim. The formula is the right side of the step's equation, in the form that the
+        page displays. If the page displays LaTeX written by hand, the formula is the right side as it was proven.
     unit : str
         Unit of the number; "1" for a pure number.
     entry : int or None

@@ -18,7 +18,7 @@ LANGUAGES = {"#include": "c", "import": "python", "export": "javascript"}
 
 
 def derivation(page: Page) -> str:
-    """Return a derivation or another page as Markdown with LaTeX formulas; its figures are drawn in the text."""
+    """Return a derivation or another page as Markdown with LaTeX formulas; its figures are embedded as SVG."""
     whole = illustrated(page) if isinstance(page, Derivation) else page
     text = inline(markdown(whole))
     for item in (*whole.opening, *whole.items):

@@ -76,7 +76,9 @@ def general_structure(scene: Scene, switched: bool = False) -> Structure:
 def _general_torque(number: int, torque: Torque, known: set[str], switched: bool) -> TorqueStructure:
     """Return the structure of a torque for the most general equations, in which each constant may have any value.
 
-    ``number`` is the number of the torque in the scene, from 1. The names of its constants are added to ``known``.
+    ``number`` is the number of the torque in the scene, from 1. The names of its constants are added to ``known``. If
+    ``switched``, functions with a jump or kink, such as sign and abs, become further constants
+    (:func:`general_structure`).
     """
     if torque.formulas:
         general = _formula_torque(torque, switched)

@@ -22,7 +22,7 @@ Parameters = tuple[tuple[str, Node], ...]  # name in the kernel, formula over th
 
 
 class Conserved(NamedTuple):
-    """A candidate for a conserved quantity, with the decision whether it is conserved.
+    """A candidate for a conserved quantity, with the decision of whether it is conserved.
 
     Attributes
     ----------
@@ -128,7 +128,10 @@ class SceneKernel:
 
     @property
     def source(self) -> str:
-        """The C text of the rates: the function ``symrot_rates``, which takes an array of parameters, used or not."""
+        """The C text of the rates: the function ``symrot_rates``.
+
+        One of its arguments is the array of the parameters, even if the rates have no parameters.
+        """
         return self.record["source"]
 
 

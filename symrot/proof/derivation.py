@@ -93,7 +93,7 @@ class Derivation(PrintedPage):
     Parameters
     ----------
     assumed : list of Expr
-        Expressions that the page states, once, to be nonzero (:meth:`nonzero`).
+        Expressions that are assumed to be nonzero; the page states each assumption once (:meth:`nonzero`).
     names, rates : dict
         The meanings of names on the page, and the rates of variables (:meth:`notation`).
 
@@ -275,20 +275,30 @@ class Derivation(PrintedPage):
     def _is_read_back(
         self, claim: str, display: Any, side: Any, sides: tuple[Any, Any], relations: Sequence[Any]
     ) -> bool:
-        """Return whether ``display``, the form printed for a side, was parsed and proven equal to ``side``.
+        """Return whether the form that the page prints for one side of a step's equation was proven equal to that side.
 
-        A form that cannot be parsed, or that has another shape than the side, is only a label and gives False.
+        Parameters
+        ----------
+        claim : str
+            The statement of the step, for the message of an error.
+        display : str, Expr, Matrix or None
+            The printed form, LaTeX or a formula; None if the page prints the side itself. LaTeX that cannot be parsed,
+            and a form whose matrix shape differs from the side, are only labels: the result is then False.
+        side : Expr or Matrix
+            The side for which ``display`` is printed.
+        sides : (left, right)
+            Both sides of the equation; LaTeX may contain their symbols.
+        relations : sequence of Expr or Eq
+            Hypotheses of the step.
 
         Raises
         ------
         ProofError
-            If the displayed form can be parsed and is not equal to the side under the hypotheses ``relations``.
+            If the printed form can be parsed and is not equal to the side under the hypotheses.
         """
-        # the page prints the side itself
         if display is None:
             return True
         try:
-            # the symbols of both ``sides`` may occur in the LaTeX
             values = self._read(display, sides) if isinstance(display, str) else [display]
         # a name in the LaTeX has no declared meaning
         except Unread:
@@ -304,14 +314,21 @@ class Derivation(PrintedPage):
     def _read(self, text: str, sides: tuple[Any, Any] = (S.Zero, S.Zero)) -> list[Any]:
         r"""Return the values of the sides of an equation in LaTeX: two for ``X = Y``, one for ``X`` alone.
 
-        If the first of several sides cannot be parsed, this side is a new name for the value of the next side: later
-        LaTeX may contain the name, and the result has no value for this side. Further equations after ``, \quad``
-        are checked, and define names for this text. Symbols of the formulas ``sides`` need no declared meaning.
+        If X in ``X = Y`` cannot be parsed, X becomes a name for the value of Y: LaTeX of later steps may contain X, and
+        the result is the value of Y alone.
+
+        A text may have further equations, separated by ``, \quad``, such as ``X = a + b, \quad a = 2 c``. Each is
+        checked. If the left side of a further equation has no meaning, it becomes a name for the value of the last
+        side, in this text alone. The main equation is the first one; if the last part of the text is a formula without
+        ``=``, that formula takes the place of the main equation.
+
+        ``sides`` are two formulas, the sides of the equation of the step: their symbols may occur in the text without
+        a declared meaning.
 
         Raises
         ------
         Unread
-            If another side cannot be parsed.
+            If Y, or X alone, or a side of a further equation cannot be parsed.
         ProofError
             If a further equation does not hold.
         """
@@ -339,7 +356,8 @@ class Derivation(PrintedPage):
     def _note(self, left: Any, right: Any) -> None:
         """Declare that ``left``, a symbol or the LaTeX of a name, stands for ``right`` in later LaTeX.
 
-        If ``right`` is LaTeX that cannot be parsed, a name ``left`` stands for nothing in later LaTeX.
+        If ``right`` is LaTeX that cannot be parsed, the meaning that the LaTeX of the name ``left`` had before is
+        removed.
         """
         if isinstance(right, str):
             try:

@@ -165,7 +165,7 @@ class Figure:
 
     @property
     def description(self) -> str:
-        """The caption without the marks of Markdown and LaTeX, which screen readers speak in place of the drawing."""
+        """The caption as plain text, without Markdown and LaTeX; screen readers speak this text for the drawing."""
         return re.sub(r"[$`{}\\]", "", re.sub(r"\\[,;]|~", " ", self.caption)).replace("_", " ")
 
     def svg(self) -> str:

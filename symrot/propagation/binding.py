@@ -70,8 +70,8 @@ class Binding:
         values = [value_of(node, constants).as_integer_ratio() for _, node in parameters]
         self._rounded, self._numbers = rounded, [x for value in values for x in rounded(*value)]
         length = len(rounded(1, 1))
-        self._moving = [
-            (slice(length * k, length * (k + 1)), _Moving(folded(node, fixed)))
+        self._start_formulas = [
+            (slice(length * k, length * (k + 1)), _StartFormula(folded(node, fixed)))
             for k, (_, node) in enumerate(parameters)
             if names(node) & START_CONSTANTS
         ]
@@ -83,23 +83,29 @@ class Binding:
         turns a value into doubles: one double by default, or two whose sum is more exact.
         """
         numbers = self._numbers.copy()
-        if self._moving:
+        if self._start_formulas:
             constants = plan.start_constants
-            for place, moving in self._moving:
+            for place, formula in self._start_formulas:
                 # exact, then rounded once: to one double or, for closed forms, to two doubles with 31 digits
-                numbers[place] = self._rounded(*moving.ratio(constants))
+                numbers[place] = self._rounded(*formula.ratio(constants))
         return numbers
 
 
-class _Moving:
-    """A formula that contains components of the initial state, such as ``3*omega_1**2``, for many initial states."""
+class _StartFormula:
+    """A formula that contains components of the initial state, such as ``3*omega_1**2``.
+
+    It is evaluated for many initial states.
+    """
 
     def __init__(self, formula: Node) -> None:
         # a monomial in one name is evaluated with integers, which is faster than with Fractions
         self._formula, self._monomial = formula, _monomial(formula)
 
     def ratio(self, constants: Mapping[str, Fraction]) -> tuple[int, int]:
-        """Return the formula's value for the given constants as integers: (numerator, positive denominator)."""
+        """Return the value of this formula of the initial state as two integers: (numerator, positive denominator).
+
+        ``constants`` is a map from the names in the formula, such as ``"omega_1"``, to their values.
+        """
         if self._monomial is None:
             return value_of(self._formula, constants).as_integer_ratio()
         top, bottom, name, power = self._monomial

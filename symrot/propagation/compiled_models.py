@@ -202,9 +202,11 @@ def has_formulas(plan: Plan) -> bool:
 
 
 def needs_bounds(plan: Plan) -> bool:
-    """Return whether bounds of the rates must limit steps by Taylor series: a long one may pass a pulse or a corner.
+    """Return whether the steps by Taylor series need limits, because a long step may miss a pulse or a corner.
 
-    A corner: where quadratic damping stops a rotation for an instant, the series of ``|omega|`` goes on to negative
+    The limits follow from bounds of the rates (time derivatives of the states) on discs of complex times. A pulse is a
+    short change of a torque formula. At a corner, such as ``|omega|`` at omega = 0, a rate is not smooth. Example:
+    quadratic damping stops a rotation for an instant; the Taylor series of ``|omega|`` then continues with negative
     values.
     """
     return has_formulas(plan) or bool(non_smooth_torque(plan))

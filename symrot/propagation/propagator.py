@@ -55,7 +55,7 @@ class Propagator:
     tolerance : float
         Error of the trajectory to aim for.
     sensitivities : sequence of str, or None
-        The initial values and constants by which derivatives of the motion are computed.
+        The initial values and constants with respect to which the motion is differentiated.
 
     Examples
     --------
@@ -216,7 +216,7 @@ class Propagator:
         return variation(scene, self.sensitivities, times)
 
     def transition(self, scene: Scene, t0: float, t1: float) -> Floats:
-        """Return the derivatives of the state at ``t1``, s, by the state at ``t0``, s: a matrix, shape (6, 6).
+        """Return the derivatives of the state at ``t1``, s, with respect to the state at ``t0``, s, shape (6, 6).
 
         The state is omega, rad/s, then a small rotation about the body axes, rad.
         """

@@ -79,9 +79,10 @@ class ShiftedParameters:
         self._lines = [_line(node) for node in self._formulas]
 
     def parameters(self, epoch: float | Fraction) -> list[float]:
-        """Return the values of all formulas, in order, for one epoch; ``epoch`` is its time on the motion's clock, s.
+        """Return the values of all formulas, in order, for one epoch, given as a time in s after ``start``.
 
-        The time of the scene is ``start`` + ``epoch``, where ``start`` is an argument of the constructor.
+        ``start`` is an argument of the constructor. The formulas contain the epoch as a time of the scene: ``start`` +
+        ``epoch``.
 
         Each value is computed exactly, or to many more digits than a double has, and rounded once; it is NaN where the
         formula has no real value. Raise IntegrationStopped if a value exceeds the range of doubles.

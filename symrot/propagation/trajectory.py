@@ -110,7 +110,7 @@ class Trajectory(MotionSamples):
     events : tuple of Event, or None
         The requested events. :attr:`at_events` has a trajectory of the samples at each of them.
     sensitivities : Sensitivities or None
-        The derivatives of the motion by initial values and constants, if they were requested.
+        The derivatives of the motion with respect to initial values and constants, if they were requested.
     event_kinds : list of lists of str, or None
         For each event and each of its times: ``"rising"``, ``"falling"`` or ``"touching"``.
 
@@ -182,7 +182,10 @@ class Trajectory(MotionSamples):
 
     @cached_property
     def _states(self) -> Floats:
-        """The states, one row per sample, shape (n, N), joined on first use from the two arrays of a closed form."""
+        """The states, one row per sample, shape (n, N).
+
+        A motion in closed form has two arrays, angular velocities and quaternions, which are joined on first use.
+        """
         return np.concatenate(self._parts, axis=1) if isinstance(self._parts, tuple) else self._parts
 
     @property

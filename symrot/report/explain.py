@@ -153,9 +153,10 @@ def _samples(plan: Plan) -> "list[PlanRow]":
 def facts(plan: Plan) -> "PlanReport":
     """Return the table of `symrot explain` as data for JSON.
 
-    A row that counts operations has the number of remaining operations of each kind as ``operations``. If the row is
-    about a rule that may shorten the equations, ``saved`` is the number of operations that the rule saves. A
-    value that a row does not have is None.
+    The first rows are about the rules that may shorten the equations, one after the other. In such a row,
+    ``operations`` has the numbers of multiplications, additions, .. that remain in the equations after this rule and
+    the rules of the rows above it, and ``saved`` is the number of operations that the rule saves. The other rows count
+    no operations: both values are None.
     """
     scene = plan.scene
     ladder = _ladder(plan)

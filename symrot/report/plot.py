@@ -261,8 +261,9 @@ def plot(trajectory: "Trajectory", ax: Any = None, panel: str = "rates") -> Any:
     ----------
     trajectory : Trajectory
         The motion. The panel draws its dense solution between its first and its last sample. A motion that belongs to
-        an ensemble, or was read from a file, has no dense solution: the panel then joins its samples by lines. A motion
-        of an ensemble has no panel ``"drift"``, and a motion that was read from a file has only the panel ``"rates"``.
+        an ensemble, or was read from a file, has no dense solution: the panel then joins its samples by lines; samples
+        on a sphere that are far apart stay points. A motion of an ensemble has no panel ``"drift"``, and a motion that
+        was read from a file has only the panel ``"rates"``.
     ax : matplotlib Axes, optional
         The axes to draw into; default: axes of a new figure of ``matplotlib.pyplot``.
     panel : str
@@ -304,7 +305,9 @@ def plot(trajectory: "Trajectory", ax: Any = None, panel: str = "rates") -> Any:
     if panel == "drift" and not hasattr(trajectory, "invariants"):
         raise InputError("panel: expected a trajectory for 'drift', got one motion of an ensemble; propagate it alone")
     if panel == "vertical" and not has_vertical(trajectory.scene):
-        raise InputError("panel: expected a scene with one torque of gravity or gravity_gradient for 'vertical'")
+        raise InputError(
+            "panel: expected for 'vertical' a scene with exactly one torque of the kind gravity or gravity_gradient"
+        )
     if panel in ("attitude", "vertical", "space"):
         trajectory.quaternion  # noqa: B018 - an error comes before a new figure
     if ax is None:
@@ -340,7 +343,8 @@ def figure(trajectory: Any) -> Any:
     for row, name in enumerate(names):
         panel = page.add_subplot(left[row])
         OVER_TIME[name](panel, t, trajectory)
-        panel.set_xlim(t[0], t[-1])
+        if t[0] != t[-1]:
+            panel.set_xlim(t[0], t[-1])
         panel.set_xlabel(f"t ({unit})", labelpad=1)
     for row, name in enumerate(paths):
         ON_SPHERES[name](page.add_subplot(right[row]), trajectory)

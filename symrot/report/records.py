@@ -119,7 +119,7 @@ class LostRecord(TypedDict):
 
 
 class DerivativeRecord(TypedDict):
-    """The derivatives of the last sample by one variable, an initial value or a constant."""
+    """The derivatives of the last sample with respect to one variable, an initial value or a constant."""
 
     # derivative of the angular velocity, rad/s per unit; None at a switch of a torque, where the derivative jumps
     omega: list[float] | None
@@ -131,7 +131,10 @@ class DerivativeRecord(TypedDict):
 
 
 class FinalRecord(TypedDict):
-    """The last sample of a motion: ``t`` (s), ``omega`` (rad/s), and the quaternion and derivatives if computed."""
+    """The last sample of a motion: ``t`` (s) and ``omega`` (rad/s), and the quaternion if it was computed.
+
+    ``sensitivities``, if requested, has the derivatives of this sample with respect to each variable, by its name.
+    """
 
     t: float
     omega: list[float]
@@ -175,8 +178,10 @@ class RunReport(TypedDict):
 class PlanRow(TypedDict):
     """A row of the table of `symrot explain`: what is computed or skipped, and how many operations that saves.
 
-    ``operations`` has the number of remaining operations of each kind, ``saved`` the number of operations that the rule
-    of the row saves; both may be None.
+    A row may be about a rule that shortens the equations of motion, such as using a symmetry of the body. Then
+    ``operations`` has the numbers of multiplications, additions, .. that remain in the equations after this rule and
+    the rules of the rows above it, and ``saved`` is the number of operations that the rule saves. In other rows, both
+    are None.
     """
 
     item: str

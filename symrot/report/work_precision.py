@@ -22,7 +22,10 @@ LARGEST_FILE = 50_000_000
 
 
 def _decades(study: Mapping[str, Any]) -> list[str]:
-    """Return the table of a study as lines of text, with one column for each power of ten of the error."""
+    """Return the times of all methods of a work-precision study as lines of text, one column for each power of ten.
+
+    A column is for the runs whose error is at most this power of ten.
+    """
     table = study["decades"]
     names = list(dict.fromkeys(name for row in table for name in row["methods"]))
     rows = [["error <=", *(f"{row['error']:.0e}" for row in table)]]
@@ -143,7 +146,8 @@ def compared(first: Mapping[str, Any], second: Mapping[str, Any]) -> dict[str, A
     Raises
     ------
     InputError
-        If the studies are of different scenes, or if no method reaches the same power of ten of the error in both.
+        If the studies are of different scenes. Also if they have no ratio in common: no method whose error reaches the
+        same power of ten, such as 1e-9, in both studies.
     """
     names = [study["scene"]["name"] for study in (first, second)]
     if names[0] != names[1]:

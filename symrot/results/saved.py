@@ -95,7 +95,7 @@ class SavedTrajectory(Samples):
 
     @cached_property
     def sensitivities(self) -> Sensitivities | None:
-        """The derivatives of the motion by initial values and constants; None if the file has none."""
+        """The derivatives of the motion with respect to initial values and constants; None if the file has none."""
         record = self.metadata.get("sensitivities")
         return None if record is None else restored(record, self._items)
 

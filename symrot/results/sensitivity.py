@@ -1,4 +1,4 @@
-"""Derivatives of a motion by initial values and constants, at the sample times, with labels."""
+"""Derivatives of a motion with respect to initial values and constants, at the sample times, with labels."""
 
 from collections.abc import Iterator, Mapping, Sequence
 from dataclasses import dataclass, replace
@@ -26,7 +26,9 @@ TIME = "t"
 
 
 class Sensitivity(NamedTuple):
-    """Derivatives at n samples by one variable, or by a vector; its k components are then the last axis of the arrays.
+    """Derivatives of a motion at n samples with respect to one variable, or to the k components of a vector.
+
+    For a vector, the last axis of the arrays counts its components.
 
     Attributes
     ----------
@@ -60,7 +62,8 @@ class SwitchSlopes(NamedTuple):
     function, how : str
         The function, and how it switches, as in ``stats.switchings`` of a trajectory.
     slopes : array, shape (m,)
-        The derivatives of the time by the m variables, s per unit of each variable; NaN where they do not exist.
+        The derivatives of the time with respect to the m variables, s per unit of variable; NaN where they do not
+        exist.
 
     Examples
     --------
@@ -78,7 +81,9 @@ class SwitchSlopes(NamedTuple):
 
 @dataclass(frozen=True, eq=False)
 class Sensitivities(Mapping[str, Sensitivity]):
-    """Derivatives of a motion at n samples, by m variables: a mapping from the requested names to derivatives.
+    """Derivatives of a motion at n samples with respect to m variables, as a mapping.
+
+    The keys are the requested names, such as ``"omega"``, and each value is a :class:`Sensitivity`.
 
     Attributes
     ----------
@@ -183,7 +188,7 @@ class Sensitivities(Mapping[str, Sensitivity]):
 
 
 def event_time_items(variables: Sequence[str], units: Sequence[str], slopes: Floats) -> list[Labelled]:
-    """Return the derivatives of k event times by m variables, shape (k, m), with labels such as ``t_by_weight``."""
+    """Return the derivatives of k event times with respect to m variables, with labels such as ``t_by_weight``."""
     items = []
     for number, (variable, unit) in enumerate(zip(variables, units, strict=True)):
         name = f"{TIME}{BY}{variable}"
@@ -229,7 +234,7 @@ def restored(record: Mapping[str, Any], items: Mapping[str, Labelled]) -> Sensit
 
 
 def time_slopes(rows: Sequence[Sequence[float | None]], variables: int | None) -> Floats:
-    """Return the derivatives of k points in time by m variables as an array, shape (k, m), from ``rows`` in a file.
+    """Return the derivatives of k times with respect to m variables as an array, shape (k, m), from ``rows`` in a file.
 
     None in the file is NaN in the result. ``variables`` is m; if it is None, k must be at least 1.
     """

@@ -144,7 +144,11 @@ def _settled(inertia: Matrix) -> Matrix:
 
 
 def _require_propagable(body: Body, value: object, where: str) -> None:
-    """Raise InputError unless a body can have the inertia, and Euler's equations determine its rates in doubles."""
+    """Raise InputError unless Euler's equations determine the angular acceleration of ``body``, computed in doubles.
+
+    The moments of inertia must be those of a possible body. They must be positive, since a torque about an axis without
+    a moment of inertia determines no acceleration, and between 1e-120 and 1e120 kg m^2, so that no product overflows.
+    """
     require_admissible(body.principal, where)
     reason = why_not_propagable(body.principal)
     if reason:

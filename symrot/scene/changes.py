@@ -72,8 +72,9 @@ class Place(NamedTuple):
 class SceneContent(NamedTuple):
     """The content of a scene, and what was read from it: initial angular velocity, body and torques.
 
-    A number that does not stand in the content, because others determine it, is taken from these objects: a body
-    component of omega, for example, if the content has the space components ``omega_space``.
+    ``content`` is the scene file as a dict. A number that the dict does not contain, because other numbers determine
+    it, is read from ``omega_b``, ``body`` or ``torques``: for example, a body component of omega if the dict has only
+    the space components ``omega_space``.
     """
 
     content: Content
@@ -195,7 +196,8 @@ def in_order(scene: SceneContent, changes: Mapping[str, Any]) -> Content:
 def _whole_path(scene: SceneContent, key: str) -> Path:
     """Return the path of the value that ``key`` names in the scene file, down to the component of a vector.
 
-    The path is () if the key names no single value; another change may still add the value.
+    The path is () if no value or more than one value of the scene has this name. Another change may still add a value
+    with this name.
     """
     if key == "principal":
         return ("body", "inertia")

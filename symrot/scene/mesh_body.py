@@ -31,7 +31,7 @@ class MeshProperties(NamedTuple):
 def read_mesh_table(
     value: Mapping[str, Any], where: str, others: Mapping[str, Entry], density: Entry, folders: Folders
 ) -> tuple[MeshProperties, dict[str, Any]]:
-    """Return the mass properties of the mesh that a table with the key ``mesh`` names, and all values of the table.
+    """Return the mass properties of the mesh file given by the key ``mesh`` of a table, and all values of the table.
 
     Parameters
     ----------

@@ -290,8 +290,9 @@ class _Origin(NamedTuple):
 def _parts(scene: Scene) -> tuple[Any, ...]:
     """Return the body, the torques and the table of samples of a scene, which :meth:`Scene.to_dict` cannot write.
 
-    The method returns the content of the file from which these objects were read. It compares them with the objects
-    that were read then: if one was replaced later, the content of the file no longer describes the scene.
+    :meth:`Scene.to_dict` returns the content of the scene file instead. It can do so only while the scene still has the
+    objects that were read from the file: it compares the result of this function with the result just after reading,
+    and raises InputError if an object was replaced in between.
     """
     return scene.body, scene.torques, scene.table
 

@@ -79,7 +79,8 @@ def run_on_cluster(job: Job, ranges: Sequence[Range], scheduler: object, store: 
     scheduler : str, Client or cluster of Dask
         The address of the scheduler, or an object that has it.
     store : Store
-        The store of the sweep. Of a chunk that a worker on this machine writes into it, only the range is yielded.
+        The store of the sweep. If a worker on this machine has written a chunk into the store itself, the chunk's range
+        of trajectories (:class:`Written`) is yielded instead of the chunk.
 
     Raises
     ------

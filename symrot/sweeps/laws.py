@@ -29,7 +29,8 @@ The smallest probability that is drawn is 2^-53: a normal distribution exceeds 8
 class _Family(NamedTuple):
     """A family of distributions: a description of its parameters, a test of their values, and its quantile function.
 
-    ``largest`` returns a number of the size of the largest numbers that the quantile function computes.
+    ``largest`` takes the values of the parameters and returns about the largest intermediate result of the quantile
+    function. If this number is infinite, the values are refused.
     """
 
     parameters: tuple[str, ...]

@@ -1,7 +1,7 @@
 """Outputs of a sweep: quantities of each trajectory at all sample times or at one time, or their extremes and means.
 
 Examples: ``energy`` at all sample times, ``omega_1@end`` at the last time, ``axis_z@2.5`` at 2.5 s, ``omega_3@max``,
-the largest sample, and ``omega_2_by_weight@end``, a derivative by an initial value or a constant.
+the largest sample, and ``omega_2_by_weight@end``, a derivative with respect to an initial value or a constant.
 """
 
 from collections.abc import Callable, Sequence
@@ -204,8 +204,11 @@ def _derivatives(name: str, scene: Scene, reduction: str, time: float, suffix: s
 
 
 def variables_of(name: str, scene: Scene) -> list[Variable]:
-    """Return the variables that a name after ``_by_`` means: one for ``weight``, three for ``attitude``."""
-    # omega_3 and attitude_2 mean one component of a vector
+    """Return the variables of differentiation that ``name`` stands for in an output such as ``omega_by_weight``.
+
+    ``name`` is the part of the output's name after ``_by_``. ``weight`` stands for one variable, ``attitude`` for
+    three, and ``attitude_2`` for one of these three.
+    """
     stem, _, number = name.rpartition("_")
     key = stem if stem == ATTITUDE and number in ("1", "2", "3") else name
     try:
@@ -280,7 +283,11 @@ def evaluate(outputs: Sequence[SweepOutput], ensemble: Any, times: Floats, sampl
 
 
 def _samples(ensemble: Any, quantity: str) -> Floats:
-    """Return the samples of a quantity or of a derivative such as ``omega_by_weight``, shape (n, m, ...)."""
+    """Return the samples of a quantity or of a derivative such as ``omega_by_weight``.
+
+    The shape is (n, m, ...) for the n motions of the ensemble and its m sample times; the further dimensions are those
+    of the quantity.
+    """
     part, by, variable = quantity.partition(BY)
     samples: Floats = getattr(ensemble.sensitivities[variable], part) if by else ensemble.quantity(quantity)
     return samples

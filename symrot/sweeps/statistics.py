@@ -84,8 +84,9 @@ def statistics_of(
 ) -> list[Table]:
     """Return statistics of ``variables`` (outputs) as arrays, over all trajectories that have a value.
 
-    The number of these trajectories is added for each output, and an array with the percentages of percentiles.
-    ``store`` must have all chunks; ``progress`` is called with a text for each output.
+    The list also has, for each output, an array with the number of these trajectories. If percentiles are requested,
+    its last array has their percentages, such as 5, 50 and 95. ``store`` must have all chunks; ``progress`` is called
+    with a text for each output.
     """
     tables = []
     for variable in variables:

@@ -382,11 +382,12 @@ def _job(
 
 
 def _require_derivatives(scene: Scene, content: Content | None, design: Design, keys: Sequence[str]) -> None:
-    """Raise InputError if the motions of a sweep have no derivatives by the variables ``keys``.
+    """Raise InputError if the motions of a sweep have no derivatives with respect to the variables ``keys``.
 
-    A derivative by a variable is refused if the sweep varies a number that the variable sets. The mass of a body, for
-    example, sets its moments of inertia: derivatives by the mass are refused if the sweep varies the radius, which sets
-    the moments of inertia too.
+    A derivative is refused if its variable and the sweep both change the same constant of the equations, unless the
+    variable is this constant itself. For example, the mass and the radius of a body both change its moments of inertia:
+    a derivative with respect to the mass is refused if the sweep varies the radius. All derivatives are refused if the
+    equations of motion have no Taylor series.
     """
     from symrot.ensemble.sensitivities import read_columns
 

@@ -29,7 +29,11 @@ Content = Mapping[str, Any]
 # so that everything follows: the mass of a shape changes its inertia, centre of mass and weight.
 @dataclass(frozen=True)
 class Target:
-    """A quantity that a sweep varies: its name and its unit; for a number in the scene file, its path and no unit."""
+    """A quantity that a sweep varies: a component of omega, a constant of the equations, or a number in the scene file.
+
+    ``path`` is the path of a number in the scene file, whose ``unit`` is empty because it is not known; for the other
+    quantities, the path is ().
+    """
 
     name: str
     unit: str

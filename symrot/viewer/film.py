@@ -157,9 +157,11 @@ def _attitudes(trajectory: Trajectory, times: Floats) -> Floats:
 
 
 def _middle(body: Floats, dcms: Floats, path: Floats) -> float:
-    """Return the height of the middle of the picture: above the origin if the body never comes far below it.
+    """Return the height z of the middle of the picture, relative to the size of the body.
 
-    ``body`` are points of the body, shape (n, 3), ``dcms`` its attitudes, and ``path`` the path of its axis.
+    The height is positive if neither the body nor the path of its axis comes far below the origin, as for a top that
+    stands on the origin; otherwise it is 0, the height of the origin. ``body`` are points of the body, shape (n, 3),
+    ``dcms`` its attitudes, and ``path`` the path of its axis.
     """
     lowest = min(float((dcms[:, 2, :] @ body.T).min()), float(path[:, 2].min()))
     # the axes x and y end lower on the screen than the origin
@@ -207,9 +209,9 @@ def _polygons(patch: Patch) -> list[Floats]:
 
 
 def _curves(patch: Patch) -> list[list[Point]]:
-    """Return the points of a patch without area, a part of the body's drawing, as lists: one list for a curve.
+    """Return the points of a curve as one list, or of separate points as one list each; both are patches without area.
 
-    For single points, there is one list for each point.
+    A patch is a part of the body's drawing: a surface, a curve or separate points.
     """
     return [patch.points] if patch.columns else [[point] for point in patch.points]
 

@@ -173,6 +173,27 @@ def test_s21_sleeping_tops_that_fall_for_long(w3, tilt):
     assert max(long_errors((0, 0, w3), tilted(tilt), [F(1, 3), F(51, 10), F(10003, 10)])) <= BAR
 
 
+@pytest.mark.parametrize("side", [1, -1])
+@pytest.mark.parametrize("tilt", [1e-8, 1e-11, 1e-14, 1e-17, 1e-22])
+@pytest.mark.parametrize("spin", [7.0, 300.0])
+def test_small_nutations_keep_their_frequencies(side, tilt, spin):
+    """The horizontal part z = x + i y of the axis obeys A z'' - side i C omega_3 z' - side M z = 0 to third order.
+
+    side is 1 for a fast top near the upright position, -1 for one that hangs. The motion starts with z' = 0.
+    """
+    q0 = (1.0, tilt, 0.0, 0.0) if side > 0 else (tilt, 1.0, 0.0, 0.0)
+    times = [0.0, 1.0, 1e3, 1e6, 1e9]
+    q = heavy_top.motion((1.0, 1.0, 0.75), 1.0, (0.0, 0.0, 1.0), (0.0, 0.0, spin), q0).evaluate(times)[1]
+    found = 2 * (q[:, 1] * q[:, 3] + q[:, 0] * q[:, 2]) + 2j * (q[:, 2] * q[:, 3] - q[:, 0] * q[:, 1])
+    with mp.workdps(40):
+        momentum = mp.mpf("0.75") * spin * side
+        one, two = [(momentum + sign * mp.sqrt(momentum**2 - 4 * side)) / 2 for sign in (1, -1)]
+        start = mp.mpc(0, -2 * mp.mpf(tilt) / (1 + mp.mpf(tilt) ** 2))
+        expected = [complex(start * (one * mp.expj(two * t) - two * mp.expj(one * t)) / (one - two)) for t in times]
+    after = np.abs(times) * tilt**2 * spin  # the frequencies depend on the square of the tilt
+    assert (np.abs(found - expected) < (2e-15 + 10 * after) * 2 * tilt).all()
+
+
 def test_s21_on_the_separatrix():
     """The motions are a pendulum that comes to rest upright, and sleeping tops with just enough energy to become
     upright.

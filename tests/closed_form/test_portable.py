@@ -1,5 +1,7 @@
 """Exact motions without a C compiler: constants by mpmath and samples by NumPy, compared with C, which shares no code."""
 
+import sys
+from concurrent.futures import ThreadPoolExecutor
 from fractions import Fraction
 
 import mpmath
@@ -12,6 +14,7 @@ from symrot.closed_form.free_body import motion as free_body
 from symrot.closed_form.gyrostat import motion as gyrostat
 from symrot.closed_form.heavy_top import motion as heavy_top
 from symrot.errors import InputError
+from symrot.formula.exact_functions import EXACT_FUNCTIONS
 from symrot.inertia.principal import principal_axes
 from symrot.propagation.propagate import propagator
 
@@ -104,6 +107,27 @@ def test_numpy_returns_what_c_returns(name, monkeypatch):
     alone = portable.evaluate(TIMES, quaternion=False), portable.evaluate(TIMES, omega=False)
     assert alone[0][1] is None and np.array_equal(alone[0][0], rates)
     assert alone[1][0] is None and np.array_equal(alone[1][1], attitudes)
+
+
+def test_motions_in_several_threads_are_those_of_one(no_compiler):
+    """Each thread changes the precision of mpmath; one that ended took the digits of the others."""
+
+    def attitudes(k):
+        top = heavy_top.motion(TOP, 1.0, ABOVE, (10.0**-k, 0.0, 1.0), (1.0, 0.0, 0.0, 0.0))
+        body = free_body.motion((1.0, 2.0, 3.0), (10.0**-k, 1.0, 10.0**-k), Q0)
+        turned = axial.motion((1, 2, 3), 2, Fraction(k), (0, 0, 1))
+        value = EXACT_FUNCTIONS["exp"](Fraction(k))
+        return *(motion.evaluate([40.0, 1e12])[1].tolist() for motion in (top, body, turned)), value
+
+    digits, interval, cases = mpmath.mp.dps, sys.getswitchinterval(), range(1, 21)
+    expected = [attitudes(k) for k in cases]
+    sys.setswitchinterval(1e-6)
+    try:
+        with ThreadPoolExecutor(4) as pool:
+            assert list(pool.map(attitudes, cases)) == expected
+    finally:
+        sys.setswitchinterval(interval)
+    assert mpmath.mp.dps == digits
 
 
 def test_huge_times(no_compiler):

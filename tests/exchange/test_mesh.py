@@ -1,7 +1,7 @@
 """Mass properties of polyhedra: exact sums of fractions, closed forms of solids, laws of translation and rotation."""
 
 from fractions import Fraction
-from itertools import pairwise
+from itertools import combinations, pairwise
 
 import numpy as np
 import pytest
@@ -243,8 +243,46 @@ def test_boxes_that_cross_at_edges_alone_are_noticed():
     for other in (box((4, 4, 4), (2, 2, 2)), box((2, 2, 2), (2, 2, 3)).flipped()):
         for matrix in (np.eye(3), np.array([[1, 2, 2], [2, 1, -2], [-2, 2, -1]]) / 4):
             surface = joined(first, other)
-            with pytest.raises(InputError, match="every winding number is 0"):
+            with pytest.raises(InputError, match="does not cross itself"):
                 body(Surface(surface.vertices @ matrix.T, surface.triangles), density=1)
+
+
+def tetrahedron(*corners):
+    corners = np.array(corners, dtype=float)
+    triangles = np.array([(0, 2, 1), (0, 1, 3), (0, 3, 2), (1, 2, 3)])
+    turns = np.linalg.det(corners[1:] - corners[0]) > 0
+    return Surface(corners, triangles if turns else triangles[:, ::-1])
+
+
+@pytest.mark.parametrize("depth", [F(1, 2**k) for k in (1, 10, 20, 30, 40)], ids=float)
+@pytest.mark.parametrize("first,second,shift", [
+    ([(-1, 0, 0), (0, 1, -1), (0, 1, 1), (0, 0, 0)], [(0, 1, 1), (-1, 0, 0), (-1, 1, 1), (-1, 1, -1)], (1, 0, 0)),
+    ([(-1, 0, -1), (-1, 1, -1), (1, 1, -1), (0, 1, 0)], [(1, 0, -1), (0, 0, 0), (0, 1, 0), (-1, 0, -1)], (0, 1, 0)),
+    ([(0, 0, -1), (0, -1, -1), (0, 1, 0), (-1, 0, 1)], [(1, -1, 1), (0, 0, -1), (1, -1, 0), (-1, 0, 1)], None),
+], ids=["parallel edges", "coplanar faces", "two common corners"])  # fmt: skip
+def test_tetrahedra_that_overlap_little_are_noticed_and_those_that_touch_are_a_body(first, second, shift, depth):
+    """No triangle is passed by an edge in its interior: the triangles cross between two edges, or up to a corner."""
+    for sign in (1, -1) if shift else (1,):
+        other = np.array(second, dtype=object)
+        if shift:
+            other = other + sign * depth * np.array(shift, dtype=object)
+        else:
+            other[2, 1] -= depth
+        edges = [np.array(list(combinations(corners, 2)), dtype=object) for corners in (first, other)]
+        directions = [each[:, 1] - each[:, 0] for each in edges]
+        # convex bodies are apart if a plane separates them: a face of one, or parallel to an edge of each
+        normals = np.concatenate([
+            *(np.cross(each[:, None], each[None]).reshape(-1, 3) for each in directions),
+            np.cross(directions[0][:, None], directions[1][None]).reshape(-1, 3),
+        ])  # fmt: skip
+        heights = [np.array(corners, dtype=object) @ normals.T for corners in (first, other)]
+        apart = (heights[0].max(axis=0) <= heights[1].min(axis=0)) | (heights[1].max(axis=0) <= heights[0].min(axis=0))
+        surface = joined(tetrahedron(*first), tetrahedron(*other))
+        if apart[normals.any(axis=1)].any():
+            assert "no two triangles cross" in body(surface, density=1).checks
+        else:
+            with pytest.raises(InputError, match="does not cross itself"):
+                body(surface, density=1)
 
 
 @pytest.mark.parametrize("surface,mass", [

@@ -14,6 +14,9 @@ from sympy import Matrix
 import symrot
 from symrot.dynamics.equations import hurwitz_determinants
 from symrot.errors import PropagationError
+from symrot.planning.plan import make_plan
+from symrot.propagation.method import choose_method
+from symrot.propagation.switched.motion import SwitchedMotion
 from tests.needs import needs_compiler
 
 pytestmark = [needs_compiler, pytest.mark.usefixtures("quick_compiler")]
@@ -62,7 +65,8 @@ def test_a_switch_that_brakes_by_its_square_slides():
 ])  # fmt: skip
 def test_what_has_no_single_value_while_sliding_ends_in_a_sentence(torque):
     with pytest.raises(
-        symrot.PropagationError, match=r"slide along the jumps? of sign\(omega_1\).*, but not in exactly one way"
+        symrot.PropagationError,
+        match=r"slide along the jumps? of sign\(omega_1\).* cannot compute: .*(do not determine|has no value)",
     ):
         symrot.propagator(scene(HOLDING, torque), "auto", 1e-9)([0, 5])
 
@@ -72,9 +76,19 @@ def test_friction_written_in_two_torques_ends_in_a_sentence():
         "schema": 1, "body": {"principal": [1, 1, 1]}, "initial": {"omega": [0, 0, 1]}, "span": {"t": [0, 5]},
         "torque": [{"kind": "expression", "torque": ["0", "0", f"-{k}*sign(omega_3)"]} for k in (1, 2)],
     }  # fmt: skip
-    with pytest.raises(symrot.PropagationError, match="not in exactly one way") as stopped:
+    with pytest.raises(symrot.PropagationError, match=r"do not determine the value of sign\(omega_3\)") as stopped:
         symrot.propagator(symrot.Scene.from_dict(made), "auto", 1e-9)([0, 0.25, 5])
     assert stopped.value.trajectory.t.tolist() == [0, 0.25]
+
+
+def test_a_motion_that_would_slide_backward_ends_where_it_meets_the_jump():
+    """omega_1 = 1/2 + t is zero at t = -1/2; before, the body can have been at rest in an unstable way for any time."""
+    torque = scene("sign(omega_1)", "0", omega=("1/2", 0, 0))
+    assert symrot.propagator(torque, "auto", 1e-9)([5]).omega[0, 0] == pytest.approx(5.5, abs=1e-8)
+    with pytest.raises(
+        symrot.PropagationError, match=r"t = -0\.5 .* slide along the jump of sign\(omega_1\) .* forward in time"
+    ):
+        symrot.propagator(torque, "auto", 1e-9)([-3])
 
 
 @pytest.mark.thinned(2)
@@ -196,3 +210,18 @@ def test_hurwitz_determinants_tell_whether_all_eigenvalues_are_left():
                 assert left == (last < 0), entries
                 verdicts.add((size, left))
     assert len(verdicts) == 8
+
+
+@pytest.mark.parametrize(("start", "omega", "end"), [(0, 1, 3), (2, -1, -1)])
+def test_a_motion_that_stops_early_has_no_states_beyond_its_end(start, omega, end):
+    """omega_1 = 1/(1 - t) up to the pole at t = 1, from t = 0 forward and from t = 2 backward."""
+    made = symrot.Scene.from_dict({
+        "schema": 1, "body": {"principal": [1, 1, 1]}, "initial": {"omega": [omega, 0, 0]}, "span": {"t": [start, 3]},
+        "torque": [{"kind": "expression", "torque": ["step(omega_2 + 1)/(1 - t)**2", "0", "0"]}],
+    })  # fmt: skip
+    plan, broken = make_plan(made, switched=True), []
+    _, states = SwitchedMotion(plan, choose_method(plan, "taylor"), 1e-10).parts(end, broken)
+    assert len(broken) == 1 and abs(broken[0].t - 1.0) < 1e-3
+    near, beyond = start + (1 - start) * np.array([0.25, 0.75]), start + (1 - start) * np.array([1.5, 2.0])
+    assert np.abs(states(near)[:, 0] * (1.0 - near) - 1.0).max() < 20 * 1e-10
+    assert np.isnan(states(beyond)).all()

@@ -1,10 +1,10 @@
-"""Times and errors of derivatives of a motion by initial values and constants: symrot, and heyoka's variational
-equations.
+"""Times and errors of the derivatives of a motion with respect to initial values and constants: symrot and heyoka.
 
     python -m symrot.bench.comparison.sensitivities [--rounds 7] [--settings default fast compact] [--motion NAME ..]
 
-Both programs integrate the motion together with its derivatives. The error is the largest difference from difference
-quotients of two motions in 40 digits, relative to the largest derivative by the same variable.
+Both programs integrate the motion together with its derivatives (variational equations). The derivatives are compared
+with difference quotients of two motions in 40 digits. The error is the largest difference, relative to the largest
+derivative with respect to the same variable.
 """
 
 import argparse
@@ -36,8 +36,9 @@ Floats = NDArray[np.float64]
 
 
 class Case(NamedTuple):
-    """A motion of :data:`symrot.bench.taylor.MOTIONS`, its duration, s, and the variables by which it is
-    differentiated.
+    """A motion of :data:`symrot.bench.taylor.MOTIONS`, its duration, s, and the variables of its derivatives.
+
+    The last state of the motion is differentiated with respect to these variables.
     """
 
     motion: str
@@ -57,7 +58,11 @@ STATES = 7
 
 
 def reference(case: Case, variable: str) -> Floats:
-    """Return the derivatives of the seven states by ``variable`` at the last time, from two motions in 40 digits."""
+    """Return the derivatives of the seven states with respect to ``variable`` at the last time.
+
+    They are central difference quotients of two motions, with a smaller and a larger value of the variable, in 40
+    digits.
+    """
     scene = motion_scene(case.motion)
     value = Fraction(scene.value(variable))
     key = f"derivatives {DIGITS} {ORDER} {TAIL} {STEP} {variable} {case.duration}\n{scene.to_toml()}"
@@ -124,8 +129,9 @@ def _symrot(case: Case, scene: Scene) -> Callable[[], Floats]:
 
 
 def _error(computed: Floats, exact: Floats) -> float:
-    """Return the largest error of ``computed``, each column relative to the largest number of the column in
-    ``exact``.
+    """Return the largest difference of ``computed`` from ``exact``, each relative to the largest number in its column.
+
+    Both arrays have a row for each state and a column for each variable of the derivatives.
     """
     return float((np.abs(computed - exact).max(axis=0) / np.abs(exact).max(axis=0)).max())
 

@@ -85,7 +85,11 @@ class Cost(NamedTuple):
 
     @property
     def attainable(self) -> float:
-        """The largest speed-up by a second Dask worker, as 1.8, if client, scheduler and workers share two cores."""
+        """The largest factor, such as 1.8, by which a second Dask worker can speed up the sweep on two cores.
+
+        Client, scheduler and both workers share the two cores. A single worker needs its own processor time; two cores
+        need at least half of the processor time of all.
+        """
         return 2 / (1 + self.client / self.workers)
 
 

@@ -1,4 +1,4 @@
-"""Declarations of C: structures, enumerations and variables with their first values."""
+"""Declarations of C: structures, enumerations and variables with their initial values."""
 
 from fractions import Fraction
 from typing import Any
@@ -10,7 +10,11 @@ __all__ = ["Declarations"]
 
 
 class Declarations(Expressions):
-    """Reader of C declarations: it records names and types, and translates first values of variables to functions."""
+    """Reader of C declarations: it records names and types, and translates initial values to Python functions.
+
+    Such a Python function takes the frame, the list of the values of a C function's variables, and returns or stores
+    the initial value of a variable.
+    """
 
     def _declarator(self, base: Type) -> tuple[str, Type]:
         while self._take("*"):
@@ -56,9 +60,10 @@ class Declarations(Expressions):
         return struct
 
     def _variables(self, kind: Type, name: str, base: Type, is_global: bool) -> list[Run]:
-        """Read the rest of a declaration of variables; return statements that give the variables their first values.
+        """Read the rest of a declaration; return Python functions that give local variables their initial values.
 
-        The first variable, ``name`` of type ``kind``, was read before. Global variables get their first values at once.
+        The name and the type (``kind``) of the first variable were read before. Global variables get their initial
+        values at once.
         """
         runs: list[Run] = []
         while True:

@@ -46,8 +46,9 @@ _OPERATIONS: Mapping[str, Callable[[Any, Any], Any]] = {
 class Expressions(Reader):
     """Reader of C expressions: it reads an expression from the tokens and returns it as a :class:`Value`.
 
-    A Value holds Python functions of the frame, the list of a C function's variables. One function computes the value
-    of the expression; for a variable, a second function computes its address, a pair (container, index).
+    A Value holds Python functions. Their argument is the frame: the list of the values of a C function's variables. One
+    function returns the value of the expression. For a variable, a second function returns its address, a pair
+    (container, index).
     """
 
     def _expression(self) -> Value:
@@ -80,8 +81,9 @@ class Expressions(Reader):
     def _changed(self, mark: str, kind: Type, place: Run, value: Value) -> Value:
         """Return an assignment such as ``a[i++] += b`` as a Value that computes the address of the variable once.
 
-        ``mark`` is the operation, such as ``+``; ``kind`` is the variable's type, and ``place`` the function of the
-        frame that computes its address. ``value`` is the right side.
+        ``mark`` is the operation, such as ``+``; ``kind`` is the variable's type. ``place`` is the Python function that
+        takes the frame (the values of the C function's variables) and returns the address of the variable. ``value`` is
+        the right side.
         """
         slot = self._slot()  # for the address
         before = self._at(kind, lambda f: f[slot])
@@ -207,7 +209,8 @@ class Expressions(Reader):
     def _at(self, kind: Type, place: Run) -> Value:
         """Return a C variable as a Value; ``kind`` is its type.
 
-        ``place`` is the function of the frame that computes the variable's address, a pair (container, index).
+        ``place`` is the Python function that takes the frame (the values of the C function's variables) and returns the
+        address of the variable, a pair (container, index).
         """
         if kind.kind == "array":
             # the address of the first element
@@ -367,9 +370,10 @@ def _within(position: int) -> int:
 
 
 def _boxed(run: Run) -> Run:
-    """Return a function of the frame that calls ``run`` and returns the address of a new variable with its result.
+    """Return a function that stores the result of ``run`` in a new variable and returns the address of this variable.
 
-    The address is the pair ([result], 0): a list, and the index of the result in the list.
+    Both functions take the frame, the list of the values of the C function's variables. The address is the pair
+    ([result], 0): a list, and the index of the result in the list.
     """
     return lambda f: ([run(f)], 0)
 

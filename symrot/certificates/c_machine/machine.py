@@ -1,9 +1,9 @@
 """A machine that runs functions of C on numbers of any kind, such as decimals of 60 digits instead of doubles.
 
-It knows the C of symrot's closed forms: structures, arrays, pointers, ``for`` loops and cases, but neither strings nor
-allocation. Every ``double`` operation is one operation on the numbers, and every constant has the exact value of the
-double. Integers have any size: unsigned ones do not wrap around. The modules of this folder read the text from the
-small to the large: types, expressions, declarations, statements, functions.
+It knows the C of symrot's closed forms: structures, arrays, pointers, ``for``, ``if`` and ``switch``, but neither
+strings nor allocation. Every ``double`` operation is one operation on the numbers, and every constant has the exact
+value of the double. Integers have any size: unsigned ones do not wrap around. Each module of this folder reads larger
+units of the text than the one before: types (reader.py), expressions, declarations, statements, functions (machine.py).
 """
 
 from collections.abc import Callable, Mapping

@@ -46,7 +46,7 @@ class Function(NamedTuple):
 
     result: Type
     parameters: list[Type]
-    body: list[Run]  # one element, a function of the frame, once the body is read
+    body: list[Run]  # one element, once the body is read: the Python function that runs the body on the frame
     slots: list[int]  # one element: the number of variables
 
 

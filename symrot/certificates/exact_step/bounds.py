@@ -1,7 +1,8 @@
 """Bounds of the errors of an exact step of a free body on a box of states, from its C text.
 
-The C text runs on numbers with bounds of their errors (bounded_number.py), for one part of the box after another. In a
-part no component of omega changes its sign; the phase of the elliptic functions takes 64 equal ranges in turn.
+An exact step computes the closed form of the motion, with elliptic functions. Its C text runs on numbers with bounds of
+their errors (bounded_number.py), for one part of the box after another. In a part no component of omega changes its
+sign; the phase of the elliptic functions takes 64 equal ranges in turn.
 Nearly all of the error comes from single operations on doubles, and each of them adds its rounding error. Operations on
 sums of two doubles add the relative errors that functions.py states. Some intervals are cut to the known range of the
 exact value, such as 0 <= m <= 1 for the modulus m.
@@ -156,9 +157,9 @@ class _Context:
         ``phase`` points to rate and start, each a sum of two doubles, in revolutions. ``t`` points to one interval, the
         times of all samples in units of the time scale (the C text multiplies seconds by a power of two near |omega|).
         All ``count`` samples get the same sine and cosine, those of this interval. The C function also adds
-        ``slope*whole[i]`` to the phase of sample i; here ``slope`` must be 0, as it is for a modulus below 0.7, and
-        ``whole`` is ignored. InputError is raised for another slope, for more than ``LONGEST`` revolutions, and for
-        times above ``SIZES``.
+        ``slope*whole[i]`` revolutions to the phase of sample i. It needs them only for motions near the separatrix; for
+        a modulus below 0.7 the C text passes the slope 0. So ``whole`` is ignored here. InputError is raised for
+        another slope, for more than ``LONGEST`` revolutions, and for times above ``SIZES``.
         """
         values, first = phase
         rate, start = pair_total([values[first], values[first + 1]]), pair_total([values[first + 2], values[first + 3]])
@@ -189,10 +190,11 @@ class _Context:
     # --- runs ---------------------------------------------------------------------------------------------------------
 
     def prepare(self, moments: list[float], omega: list[Bounded]) -> None:
-        """Compute the constants of all motions with initial rates in given ranges, and store them in ``self.motion``.
+        """Compute the constants of all motions whose initial angular velocity is in given ranges.
 
-        ``omega`` has the ranges of the three initial rates; the initial quaternion is any unit quaternion. InputError
-        is raised if the C code rejects the states, UndecidedError if the ranges must be divided into smaller ones.
+        ``omega`` has the ranges of its three components; the initial quaternion is any unit quaternion. The constants
+        are stored in ``self.motion``. InputError is raised if the C code rejects the states, UndecidedError if the
+        ranges must be divided into smaller ones.
         """
         motion = [self.machine.blank("free_body")]
         zero = point(0.0)
@@ -208,7 +210,7 @@ class _Context:
         self.motion = motion[0]
 
     def after(self, size: Bounded) -> list[Bounded]:
-        """Return the state after a step of ``size`` seconds: three rates, then the quaternion, with error bounds.
+        """Return the state after a step of ``size`` seconds: omega, then the quaternion, with error bounds.
 
         The bounds hold if the phase of the elliptic functions after the step is in the range ``self.phase``.
         """
@@ -243,13 +245,13 @@ def _exact_defect(moments: Place, omega: Place) -> list[Any]:
     once, so the result has the relative error of one operation, ``PAIR`` = 2^-102. ``moments`` and ``omega`` point to
     three sums of two doubles each. UndecidedError is raised if a product may underflow.
     """
-    inertia, rates = _pairs_at(moments, 3), _pairs_at(omega, 3)
+    inertia, velocities = _pairs_at(moments, 3), _pairs_at(omega, 3)
     middle = sorted(range(3), key=lambda i: inertia[i].low)[1]
     total = point(0.0)
     for i in range(3):
         if i != middle:
             share = Fraction(inertia[i].low) * (Fraction(inertia[i].low) - Fraction(inertia[middle].low))
-            sizes = rates[i].least, rates[i].most
+            sizes = velocities[i].least, velocities[i].most
             ends = sorted(float(share) * x * x for x in sizes)
             if share and any(x and abs(end) < SMALL for x in sizes for end in ends):
                 raise UndecidedError  # the product may underflow
@@ -312,7 +314,8 @@ def _series_error(machine: Machine) -> float:
 def free_body_bounds(source: str, name: str, moments: list[float], box: Box) -> tuple[list[float], list[float]]:
     """Return (rounding, truncation): bounds of the errors of an exact step of a free body.
 
-    Each is a list of seven bounds: of omega_1 to omega_3, then of q0 to q3. The results of 16 calls are kept.
+    An exact step computes the closed form of the motion; its truncation error is that of the series in the C text. Each
+    of the two is a list of seven bounds: of omega_1 to omega_3, then of q0 to q3. The last 16 results are cached.
 
     Parameters
     ----------

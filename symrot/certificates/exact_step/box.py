@@ -86,8 +86,9 @@ def power_near(largest: float) -> float:
 def halves(part: Part) -> tuple[Part, Part]:
     """Return the two halves of ``part``, ranges of the components of omega, divided in the middle of the widest range.
 
-    InputError is raised if no double is inside the widest range. Then the part cannot be divided, although the step's
-    errors have no bound on it, for example because the modulus of the elliptic functions is 0.7 or more.
+    InputError is raised if no double is inside the widest range, so that the part cannot be divided. This happens where
+    no bound of the step's errors is found, however small the part: for example where the modulus of the elliptic
+    functions is 0.7 or more.
     """
     widths = [abs(high - low) for low, high in part]
     place = widths.index(max(widths))

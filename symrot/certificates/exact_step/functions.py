@@ -26,10 +26,11 @@ SLACK = 1e-12  # relative error of intervals computed with doubles from <math.h>
 
 
 def pair(value: Bounded) -> list[Any]:
-    """Return a number in the form of a sum of two doubles of the C text: a list [high part, low part].
+    """Return a number as the C text represents it: as a sum of two doubles, a list [high part, low part].
 
-    The high part is ``value`` rounded to a double, with ``value`` itself in its attribute ``pair``, from which
-    :func:`pair_total` recovers it. The low part is not computed: it is 0 if ``value`` is an exact double, else None.
+    The high part is ``value`` rounded to a double. Its attribute ``pair`` holds ``value`` itself, so that
+    :func:`pair_total` needs no low part. So the low part is not computed: it is 0 if ``value`` is an exact double, else
+    None.
     """
     high = value.rounded(DOUBLE)
     return [Bounded(high.low, high.high, high.error, high.relative, value), point(0.0) if value.is_exact else None]

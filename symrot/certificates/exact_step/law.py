@@ -1,8 +1,8 @@
 """The check that the C text of an exact step with elliptic functions solves the equations of motion, to 15 digits.
 
-The text has loops over arithmetic-geometric means and series, so that no finite formula is compared. It is read as a
-program on real numbers and run with 60 digits: F(x, 0) must be x, and dF/d(dt) must be the rates at F, at states that
-follow from the hash of the text. So constants, signs, series and where they end are checked; rounding is not.
+The text has loops over arithmetic-geometric means and series, so there is no finite formula to compare. It is read as a
+program on real numbers and run with 60 digits: F(x, 0) must be x, and dF/d(dt) must be the rates at F, at pseudo-random
+states x, seeded by the hash of the text. So constants, signs, series and where they end are checked; rounding is not.
 """
 
 from collections.abc import Callable, Mapping, Sequence
@@ -36,7 +36,7 @@ _State = tuple[list[Decimal], Decimal]
 
 
 class _Slope:
-    """A number that depends on dt, with its derivative by dt."""
+    """A number that depends on dt, with its derivative with respect to dt."""
 
     __slots__ = ("slope", "value")
 
@@ -112,9 +112,10 @@ def _number(value: Fraction) -> Decimal:
 
 
 def _rint(x: Any) -> Decimal:
-    """Return the whole number nearest to ``x``, a Decimal or a _Slope (a value with its derivative by the step size).
+    """Return the whole number nearest to ``x``, as a Decimal.
 
-    The result is a Decimal, since its derivative is zero.
+    ``x`` is a Decimal or a _Slope, a value with its derivative with respect to the step size. The derivative of the
+    result is zero.
     """
     return _slope(x).value.to_integral_value(ROUND_HALF_EVEN)
 
@@ -178,9 +179,9 @@ _OWN: Mapping[str, tuple[str, Callable[..., Any]]] = {
 
 
 def _states(source: str, omega_scale: Fraction) -> list[_State]:
-    """Return pairs (state, size dt of a step) that follow from the hash of a C text; a state is omega and a quaternion.
+    """Return pseudo-random pairs (state, size dt of a step), seeded by the hash of a C text.
 
-    ``omega_scale``, in rad/s, is a factor of omega: its components are at most 1.25*omega_scale. dt is between
+    A state is omega and a quaternion. The components of omega are at most 1.25*omega_scale, in rad/s; dt is between
     0.25/omega_scale and 2.25/omega_scale.
     """
     states = []
@@ -203,12 +204,12 @@ def law_section(
     source: str, name: str, rates: Program, values: Mapping[str, Fraction], parameters: Sequence[Fraction],
     omega_scale: Fraction, count: int = STATES,
 ) -> dict[str, Any]:  # fmt: skip
-    """Check at some states that a C function computes the motion; return the section that the step's certificate has.
+    """Check at some states that a C function computes the motion; return this check as data for the certificate.
 
     The motion is the solution of the rates' differential equations: a step of size 0 must change nothing, and the
-    derivative by dt of the state after a step must be the rates there. The section is a dict: ``law`` (these two
-    equations in words), ``states`` (their number), ``digits``, ``largest_violation`` (relative, as text). The
-    results of 16 calls are kept.
+    derivative with respect to dt of the state after a step must be the rates at this state. The result is a dict:
+    ``law`` (these two equations in words), ``states`` (their number), ``digits``, ``largest_violation`` (relative, as
+    text). The last 16 results are cached.
 
     Parameters
     ----------
@@ -254,10 +255,13 @@ def _violation(
     machine: Machine, name: str, rates: Program, constants: Mapping[str, Decimal], p: list[Decimal],
     state: list[Decimal], dt: Decimal, omega_scale: Decimal,
 ) -> Decimal:  # fmt: skip
-    """Return the largest relative error, for one state and ``dt``, of F(x, 0) = x and dF/d(dt) = rates at F.
+    """Return the largest relative error of the two equations F(x, 0) = x and dF/d(dt) = f(F), for one state and ``dt``.
 
-    F is the step that the C function ``name`` computes. CertificateError is raised if the error
-    is 10^-DIGITS or more, or if the C function rejects the state.
+    F(x, dt) is the state after a step that the C function ``name`` computes, and f are the rates. ``p`` are the
+    parameters that the C function takes; ``constants`` maps the symbols in the formulas of the rates, other than the
+    state, to their values. Errors of omega are relative to the larger of ``omega_scale`` and the largest component of
+    omega, both in rad/s. CertificateError is raised if an error is 10^-DIGITS or more, or if the C function rejects the
+    state.
     """
     states = [component[0] for component in rates.signature.argument("y").components]
     scale = max(omega_scale, *map(abs, state[:3]))

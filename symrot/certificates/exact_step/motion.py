@@ -54,8 +54,8 @@ def require_limits(file: str, operations: Operations) -> None:
 def motion_section(file: str, rates: Program, places: Mapping[str, str], operations: Operations) -> dict[str, Any]:
     """Check that a C function computes the solution of the rates' equations; return the section ``motion``.
 
-    The section of the certificate is a dict: ``law`` (for dt = 0 the step changes nothing, and its derivative by dt is
-    the rates at its result), ``points`` (the number of random points of the check), and
+    The section of the certificate is a dict: ``law`` (for dt = 0 the state is unchanged, and the derivative of the new
+    state with respect to dt is the rates at the new state), ``points`` (the number of random points of the check), and
     ``wrong_with_probability_below``: a bound of the probability that a C function which violates the law passes.
 
     Parameters
@@ -121,7 +121,11 @@ def _compared(
 
 
 def _step(operations: Operations, places: Mapping[str, str], values: Mapping[str, Residue]) -> list[Dual]:
-    """Return the components of the state after a step from one point, each with its derivative by dt."""
+    """Return the components of the state after a step, each with its derivative with respect to dt.
+
+    ``places`` maps each input of the C function, such as ``"x[0]"``, to its symbol, such as ``"omega_1"``. ``values``
+    maps each symbol, that of dt included, to its value: a residue, that is an integer modulo the prime ``PRIME``.
+    """
     number = exact(operations.precision)
     inputs = {
         place: Dual(values[symbol], {SIZE: Residue(1)} if symbol == SIZE else {}) for place, symbol in places.items()
@@ -149,9 +153,11 @@ def _root(x: Any) -> Residue:
 
 
 def _circle(x: Any) -> tuple[Residue, Residue]:
-    """Return cosine and sine of an angle: 1 and 0 for the angle 0, else a random point of the circle.
+    """Return cosine and sine of an angle as residues, that is integers modulo the prime ``PRIME``.
 
-    Equal angles have equal points.
+    They are 1 and 0 for the angle 0. For another angle they are a pseudo-random solution of c^2 + s^2 = 1 modulo the
+    prime, the same for equal angles: equations that hold for every point of this circle hold for the angle's own
+    cosine and sine.
     """
     angle = Residue.of(x)
     if not angle.value:

@@ -235,9 +235,11 @@ class _EqualityProver:
         return then == reader.read(function.limit) and other == reader.read(function.formula)
 
     def _series(self, square: int, split: int, near: int, far: int) -> Quotient:
-        """Return the function, such as sine_gap(x), that a conditional ``x*x < c ? series : formula`` computes.
+        """Return the function value that a conditional ``x*x < c ? series : formula`` computes.
 
-        The arguments are the nodes of x*x, c, the series and the formula.
+        An example is sine_gap(x) = (x - sin x)/x^3. Like every function value it is an atom, a variable of the
+        polynomials, and so the result is a fraction of polynomials. The arguments are the indices of the nodes of x*x,
+        c, the series and the formula.
         """
         for (name, arguments), atom in list(self.fractions.atoms.items()):
             if name not in REMOVABLE or self.fractions.multiply(arguments[0], arguments[0]) != self.values[square]:

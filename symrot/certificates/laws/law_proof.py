@@ -1,7 +1,9 @@
 """One attempt to prove a law: the numerator of each expression stated to be zero is a sum of cofactors times relations.
 
 A relation is a polynomial known to be zero. A generator is a variable for a function value such as ``cos(x)``. A base
-angle is an angle, such as x/2, whose sine and cosine are generators.
+angle is an angle, such as x/2, whose sine and cosine are generators; all other angles in the formulas are sums of
+integer multiples of base angles and of pi/2. A case is a list of assumptions that selects one branch of each
+conditional in the formulas.
 """
 
 from collections.abc import Callable, Mapping, Sequence
@@ -168,9 +170,10 @@ class LawProver(FormulaReader):
         return self.read(plain)
 
     def takes_first_branch(self, choice: Expr) -> bool:
-        """Return whether the current case takes the first branch of the conditional ``choice``.
+        """Return whether the first branch of the conditional ``choice`` applies in the case that is being proven.
 
-        UndecidedChoice is raised if the case does not say which.
+        The case is a list of assumptions about the conditionals, ``left >= right`` or ``left < right``.
+        UndecidedChoice is raised if the list contains no assumption about this conditional.
         """
         left, right = (quotient_text(self.read(argument)) for argument in choice.args[:2])
         if (left, right) not in self.decided:
@@ -267,10 +270,13 @@ class LawProver(FormulaReader):
     # --- angles -------------------------------------------------------------------------------------------------------
 
     def angle(self, expr: Expr) -> Quotient:
-        """Return an angle as a fraction of polynomials, up to multiples of 2 pi."""
+        """Return an angle as a fraction of polynomials, up to multiples of 2 pi.
+
+        The variables of the polynomials are the inputs, pi, and generators for function values such as
+        ``atan2(y, x)``. For an angle that a formula wraps to [-pi, pi], the result is the angle before wrapping.
+        """
         while str(expr) in self.formulas and expr.is_Symbol:
             expr = self.formulas[str(expr)]
-        # an angle that the formula wraps to [-pi, pi]: the angle before wrapping
         if isinstance(expr, select_ge) and isinstance(expr.args[2], select_ge):
             inner = expr.args[1]
             lifted = select_ge(inner, -pi, inner, inner + 2 * pi)
@@ -282,7 +288,11 @@ class LawProver(FormulaReader):
         return self.read(expr)
 
     def cosine_and_sine(self, angle: Quotient) -> tuple[Quotient, Quotient]:
-        """Return the pair (cosine, sine) of an angle, each a fraction of polynomials in generators."""
+        """Return the pair (cosine, sine) of an angle, each a fraction of polynomials.
+
+        The variables of the polynomials are the inputs and generators, which stand for function values such as
+        cos(x/2).
+        """
         above, below = angle
         if below != 1:
             raise CertificateError(
@@ -332,9 +342,10 @@ class LawProver(FormulaReader):
         return cosine, add(multiply(a[1], b[0]), multiply(a[0], b[1]))
 
     def _multiple(self, unit: PolyElement, coefficient: Fraction) -> tuple[Quotient, Quotient]:
-        """Return the pair (cosine, sine) of ``coefficient*unit``, an integer multiple of a base angle such as x/2.
+        """Return the pair (cosine, sine) of the angle ``coefficient*unit``, each a fraction of polynomials.
 
-        ``unit`` is a monomial, such as x.
+        ``unit`` is a monomial, such as x. The angle must be an integer multiple of the base angle of ``unit``, such as
+        x/2, which :meth:`_base` gives.
         """
         base = self._base(unit, coefficient)
         first = unit * QQ(base.numerator, base.denominator)
@@ -371,11 +382,12 @@ class LawProver(FormulaReader):
         return known
 
     def _pair(self, unit: PolyElement, angle: PolyElement) -> tuple[Quotient, Quotient]:
-        """Return the pair (cosine, sine) of a base angle (:meth:`_base`), each a fraction of polynomials.
+        """Return the pair (cosine, sine) of a base angle, each a fraction of polynomials.
 
-        ``unit`` is a monomial, such as x, and ``angle`` is its base angle, such as x/2. The first call for ``unit``
-        makes two new generators, variables of the polynomials; later calls return the same pair. For an arc tangent,
-        cosine and sine are the fractions found by :meth:`arc`.
+        ``unit`` is a monomial, such as x. ``angle`` is its base angle, such as x/2: all multiples of ``unit`` in the
+        formulas are integer multiples of this angle. The first call for ``unit`` makes two new generators, variables of
+        the polynomials; later calls return the same pair. For an arc tangent, cosine and sine are the fractions found
+        by :meth:`arc`.
         """
         if unit not in self.angle_functions:
             cosine, sine = self.generator(f"cos({angle})"), self.generator(f"sin({angle})")
@@ -415,7 +427,9 @@ class LawProver(FormulaReader):
     def _combined(self, value: PolyElement, degree: int) -> tuple[list[PolyElement], PolyElement]:
         """Return (cofactors, rest) such that ``value`` is the sum of cofactors times relations, plus the rest.
 
-        Cofactors of hypotheses have at most the degree ``degree``.
+        There are two kinds of relations: first the rules, which hold between generators, such as sin^2 + cos^2 = 1;
+        then the hypotheses of the law, such as the unit norm of a quaternion. The cofactor of a hypothesis has at most
+        the degree ``degree``; the cofactor of a rule may have any degree.
         """
         by_rules, remainder = value.div(self.rules) if self.rules else ([], value)
         # without cofactors of that degree the rest is not zero

@@ -202,23 +202,24 @@ def _outputs(path: ExecutionPath, text: Operations, terms: Terms, width: int) ->
 
 
 def _unfused(terms: Terms, got: list[int], known: Known) -> tuple[list[int], Known, str]:
-    """Return the outputs ``got`` and comparisons ``known`` with each fused a*b + c split into product and sum.
+    """Return the outputs ``got`` and the comparisons ``known`` with each fused a*b + c split into product and sum.
 
-    The third result is ``""`` if this split is valid; otherwise it is the text of a product or number that makes it
-    invalid, so that the code is rejected.
+    After the split, product and sum are rounded separately, as in the C text. ``known`` maps pairs of compared terms to
+    the outcomes that are possible on this path through the code. The split is not valid if the code has a product that
+    is rounded in one place and fused in another, or if it makes the known comparisons of a number contradict each
+    other. The third result is the text of such a product or number, and the code is then rejected; if the split is
+    valid, it is ``""``.
     """
     pairs = [operand for pair in known for operand in pair]
     if not any(terms.kind(index) in ("fma", "fnma") for index in terms.order(got + pairs)):
         return got, known, ""
     merged: dict[Pair, Outcomes] = {}
-    # invalid: a product that is fused at one operation and rounded at another
     split = _split_product(terms, got + pairs)
     for pair, outcomes in known.items():
         a, b = terms.rebuilt(pair, {}, fused=False)
         swapped_outcomes, *rounded = terms.compared(outcomes, a, b)
         place = (rounded[0], rounded[1])
         merged[place] = merged.get(place, ANY) & swapped_outcomes
-        # invalid: a number whose known comparisons contradict each other after the split
         split = split or ("" if merged[place] else term_text(terms, a, 2))
     return terms.rebuilt(got, {}, fused=False), merged, split
 
@@ -255,7 +256,7 @@ def _apart_from_zeros(terms: Terms, first: list[int], second: list[int]) -> bool
 
 
 def _split_product(terms: Terms, roots: list[int]) -> str:
-    """Return the text of a product that the code rounds at one operation and fuses at another, or ``""``."""
+    """Return the text of a product that is rounded in one place and fused into a multiply-add elsewhere, or ``""``."""
     # the rounding errors of such a product may cancel in the C text, but do not cancel in the object code
     below = terms.order(roots)
     fused = {terms.mul(*terms.nodes[index][2:4]) for index in below if terms.kind(index) in ("fma", "fnma")}

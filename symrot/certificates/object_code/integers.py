@@ -195,11 +195,14 @@ def _known_byte(state: MachineState, name: str) -> int:
 
 
 def _computed(state: MachineState, name: str, first: Words, second: Words) -> tuple[Words, tuple[str, tuple[int, ...]]]:
-    """Return the result and the flags of the instruction ``name``, such as ``add``, on two integers or addresses."""
+    """Return the result and the flags of the instruction ``name``, such as ``add``, on two integers or addresses.
+
+    If both operands are known integers, the flags are ``("integers", (zero, sign, carry, overflow))``; otherwise they
+    are ``("unknown", ())``.
+    """
     terms, bits = state.context.terms, 32 * len(first)
     x, y = state.integer(first), state.integer(second)
     a, b = state.whole(first), state.whole(second)
-    # the flags are known only if both operands are
     unknown: tuple[str, tuple[int, ...]] = ("unknown", ())
     if name in ("sub", "xor", "cmp") and first == second:
         x = y = 0

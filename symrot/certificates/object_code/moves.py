@@ -22,8 +22,8 @@ UNALIGNED = {"movups", "movupd", "movdqu", "movdqu32", "movdqu64", "lddqu"}
 def _source(state: MachineState, instruction: Instruction, operand: object, size: int, bare: str) -> Words:
     """Return the 32-bit words of a source operand: a vector register, or ``size`` bytes of memory.
 
-    ``bare`` is the instruction's name without the prefix ``v``; with it, NotUnderstood is raised if the instruction
-    needs an aligned address and the address may not be aligned.
+    ``bare`` is the instruction's name without the prefix ``v``. The name decides whether the address in memory must be
+    a multiple of ``size`` (aligned). If so, NotUnderstood is raised for an address that may not be aligned.
     """
     if isinstance(operand, Register) and operand.name in VECTORS:
         return list(state.register(operand.name))

@@ -104,7 +104,8 @@ def _bitwise(operation: Callable[..., int]) -> Numeric:
 def _compare(suffix: str, outcomes: Outcomes | None) -> Numeric:
     """Return the function for an instruction that compares numbers: all bits of a result are 1 for true, else 0.
 
-    The comparison is true for ``outcomes``, such as ``{"<", "="}``; if None, a constant in the instruction selects it.
+    ``suffix`` is the end of the instruction's name, such as ``"pd"``. The comparison is true for ``outcomes``, such as
+    ``{"<", "="}``; if they are None, a constant in the instruction selects the comparison.
     """
     by_number = list(PREDICATES.values())
 
@@ -118,14 +119,15 @@ def _compare(suffix: str, outcomes: Outcomes | None) -> Numeric:
 
 
 def _fused(suffix: str, order: str, negated: bool, subtracted: tuple[bool, ...]) -> Numeric:
-    """Return the function that executes a fused multiply-add a*b + c, with signs from ``negated`` and ``subtracted``.
+    """Return the function that executes a fused multiply-add, such as a*b + c or -(a*b) - c, rounded once.
 
-    ``order`` has the numbers of the operands: for "132", a is operand 1, b is operand 3 and c is operand 2.
+    ``suffix`` is the end of the instruction's name, such as ``"pd"``. ``order`` has the numbers of the operands: for
+    "132", a is operand 1, b is operand 3 and c is operand 2. If ``negated``, the product is -(a*b). ``subtracted`` says
+    whether c is subtracted: one Boolean for all numbers in a register, or two, for those at even and at odd positions.
     """
     places = tuple(int(digit) - 1 for digit in order)
 
     def fused(lane_subtracted: bool) -> Callable[..., int]:
-        # ``negated``: -(a*b); ``subtracted``: - c, one Boolean for all numbers or one each for even and odd positions
         def one(terms: Terms, *lane: int) -> int:
             a, b, c = (lane[place] for place in places)
             return terms.fma(terms.neg(a) if negated else a, b, terms.neg(c) if lane_subtracted else c)
@@ -146,7 +148,10 @@ def _greater(terms: Terms, a: int, b: int) -> int:
 
 
 def _blended(suffix: str) -> Numeric:
-    """Return the function that executes a blend: take the second source where the third has its sign bit set."""
+    """Return the function that executes a blend: take the second source where the third has its sign bit set.
+
+    ``suffix`` is the end of the instruction's name, ``"pd"`` for packed doubles or ``"ps"`` for packed floats.
+    """
 
     def one(terms: Terms, a: int, b: int, mask: int) -> int:
         # the sign bit of the mask decides

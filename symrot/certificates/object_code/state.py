@@ -82,6 +82,8 @@ class MachineState:
     memory: dict[tuple[str, int], int] = field(default_factory=dict)
     # compared terms -> outcomes that are possible after earlier branches
     known: dict[Pair, Outcomes] = field(default_factory=dict)
+    # the flags, by their origin: ("integers", (zero, sign, carry, overflow)), the flags themselves; ("numbers", (a, b))
+    # after a comparison of the terms a and b, which are floating-point numbers; or ("unknown", ())
     flags: tuple[str, tuple[int, ...]] = ("unknown", ())
 
     def branch(self, pair: Pair, outcomes: Outcomes) -> "MachineState":

@@ -218,7 +218,7 @@ class Terms:
         return self._add("xor", width, *sorted((a, b)))
 
     def neg(self, a: int) -> int:
-        """Return the number of the term -a for term number ``a``: the bits of a double, with the sign bit inverted."""
+        """Return the term ``-a``: the bits of ``a`` with the sign bit inverted."""
         node = self.nodes[a]
         if node[0] == "bits":
             return self.bits(node[1], node[2] ^ self._sign_bit(a))
@@ -265,7 +265,7 @@ class Terms:
         return (self.neg(a), True) if value is not None and value & self._sign_bit(a) else (a, False)
 
     def add(self, a: int, b: int) -> int:
-        """Return the number of the term for the rounded floating-point value of a + b, for the terms a and b."""
+        """Return the term for ``a + b``, rounded to the nearest floating-point number."""
         folded = self._folded(a, b, lambda x, y: x + y)
         if folded is not None:
             return folded
@@ -277,11 +277,11 @@ class Terms:
         return self._add("add", self.width(a), *sorted((a, b)))
 
     def sub(self, a: int, b: int) -> int:
-        """Return the number of the term for the rounded floating-point value of a - b, for the terms a and b."""
+        """Return the term for ``a - b``, rounded to the nearest floating-point number."""
         return self.add(a, self.neg(b))
 
     def mul(self, a: int, b: int) -> int:
-        """Return the number of the term for the rounded floating-point value of a*b, for the terms a and b."""
+        """Return the term for ``a*b``, rounded to the nearest floating-point number."""
         folded = self._folded(a, b, lambda x, y: x * y)
         if folded is not None:
             return folded
@@ -311,7 +311,7 @@ class Terms:
         return self._add("mul", width, *sorted((a, b)))
 
     def div(self, a: int, b: int) -> int:
-        """Return the number of the term for the rounded floating-point value of a/b, for the terms a and b."""
+        """Return the term for ``a/b``, rounded to the nearest floating-point number."""
         if self._value(b) != 0.0:
             folded = self._folded(a, b, lambda x, y: x / y)
             if folded is not None:
@@ -326,7 +326,7 @@ class Terms:
         return self.neg(quotient) if first != second else quotient
 
     def sqrt(self, a: int) -> int:
-        """Return the number of the term for the rounded square root of the term a."""
+        """Return the term for the square root of ``a``, rounded to the nearest floating-point number."""
         return self._add("sqrt", self.width(a), a)
 
     def fma(self, a: int, b: int, c: int) -> int:
@@ -345,7 +345,11 @@ class Terms:
     # --- choices ------------------------------------------------------------------------------------------------------
 
     def compared(self, outcomes: Outcomes, a: int, b: int) -> tuple[Outcomes, int, int]:
-        """Return (outcomes, a, b), a comparison in normal form, so that ``a < b`` and ``b > a`` become the same."""
+        """Return (outcomes, a, b), a comparison in normal form, so that ``a < b`` and ``b > a`` become the same.
+
+        ``outcomes`` are the results for which the comparison of the terms a and b is true: a set of ``"<"``, ``"="``,
+        ``">"`` and ``"?"`` (unordered, if a or b is NaN).
+        """
         zero = self.bits(self.width(a), 0)
         a, b = (zero if self._value(item) == 0.0 else item for item in (a, b))
         if self.constant(a) is not None and self.constant(b) is None:

@@ -1,8 +1,8 @@
 """The reader of emitted JavaScript: it rewrites the text as C with the same meaning, which readback.py reads.
 
 Kernels in JavaScript use few words, so that replacing them gives C; other JavaScript is refused. Array sizes come from
-the C function of the same kernel. This module shares no code with the emitter.
-``where`` is the name of a file, for error messages.
+the C function of the same kernel. This module shares no code with the emitter. In all its functions, the argument
+``where`` is the name of the file, for error messages.
 """
 
 import re
@@ -53,7 +53,11 @@ def _as_c(text: str, name: str, model: CFunction, where: str) -> str:
 
 
 def _kernel_head(names: list[str], model: CFunction, where: str) -> str:
-    """Return the head of the C function ``model``; raise CertificateError unless ``names`` are the arguments."""
+    """Return the C line ``void NAME(..)`` that replaces the first line of a JavaScript kernel.
+
+    ``names`` are the arguments in JavaScript. CertificateError is raised unless they are those of ``model``, the C
+    function of the same kernel.
+    """
     expected = [parameter.name for parameter in model.parameters]
     if names != expected:
         raise CertificateError(f"{where}: expected the arguments {', '.join(expected)}, got {', '.join(names)}")

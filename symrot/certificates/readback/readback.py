@@ -294,7 +294,7 @@ PRECISION = {"double": "binary64", "float": "binary32"}
 
 @lru_cache(maxsize=32)
 def read_kernel(text: str, name: str, where: str = "kernel") -> Operations:
-    """Read a one-sample function of a C file and return its operations; the results of 32 calls are kept.
+    """Read a one-sample function of a C file and return its operations; the last 32 results are cached.
 
     Parameters
     ----------

@@ -32,7 +32,7 @@ LIBM_ULP = 1.0  # error of sin, cos and atan2, in units in the last place of the
 
 # Let the operations 1 to k be rounded and the others exact. As k grows from 0 to the number of operations, the output
 # moves from its exact to its computed value. By the mean value theorem,
-#     computed - exact = sum over operations of (derivative of the output by the result) * (its rounding error),
+#     computed - exact = sum over operations of d(output)/d(result of the operation) * (its rounding error),
 # with derivatives between exact and computed values, where each operation acts on computed operands. Conditionals
 # compare computed numbers, so the condition of a branch narrows the intervals of computed numbers, which give the
 # rounding errors, but not the intervals in which derivatives are evaluated.
@@ -73,7 +73,7 @@ class _ErrorPass:
         self.unit = 2.0 ** -DIGITS[self.precision]
 
     def rounded(self, exact: Array, factor: float = 1.0) -> tuple[Array, Array]:
-        """Return (intervals of the computed values, error bounds) of an operation with results in ``exact``.
+        """Return (intervals of the computed values, error bounds) of an operation whose exact results lie in ``exact``.
 
         An error is at most ``factor`` times half a unit in the last place of the largest result.
         """
@@ -90,9 +90,10 @@ class _ErrorPass:
         return self.centred.refined(node, operand_places(node), values, plain)
 
     def relative(self, exact: Array, units: float, least: float) -> tuple[Array, Array]:
-        """Return (intervals of the computed values, error bounds) of a function with values in ``exact``.
+        """Return (intervals of the computed values, error bounds) of a function whose exact values lie in ``exact``.
 
-        An error is at most ``units`` unit roundoffs (2^-53 or 2^-24) of the largest value, plus ``least``.
+        An error is at most ``units`` unit roundoffs (2^-53 or 2^-24) of the largest value, plus ``least``: a bound of
+        the error that underflow within the function causes, or 0.
         """
         error = intervals.magnitude(exact) * (units * self.unit * (1 + 2.0**-20)) + least
         return intervals.widened(exact, error), error
@@ -327,7 +328,7 @@ FORWARD: dict[str, Forward] = {
     "norm": _norm, "sinc": _sinc, "arc_ratio": _arc_ratio, "gap": _gap, "select": _choice,
 }  # fmt: skip
 
-# --- backward: the derivative of the output by each operand of a node, from its derivative by that node ---------------
+# --- backward: from d(output)/d(node), the derivatives of the output with respect to the node's operands --------------
 
 _multiply = intervals.multiply_loosely
 
@@ -445,7 +446,8 @@ def evaluate(
     libm_ulp : float
         Largest error of sin, cos and atan2, in units in the last place.
     centred : bool
-        Enclose polynomials by mean value forms, which is tighter and slower.
+        Enclose polynomials by mean value forms (the value at the middle of a box plus slopes on the box times
+        deviations from the middle), which is tighter and slower.
     """
     count = boxes.shape[2]
     state = _ErrorPass(graph, boxes, decided.copy(), region, libm_ulp, [], [], np.zeros(count, bool),

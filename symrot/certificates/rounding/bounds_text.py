@@ -116,7 +116,7 @@ def rounded_up(value: Fraction, count: int = DIGITS) -> str:
 def region_phrases(region: Region) -> list[str]:
     """Return a phrase for each restriction of the inputs, such as ``q[0], q[1]: squares add up to 1, but for 2^-20``.
 
-    The number 2^-20 is the tolerance of the sum.
+    This phrase says that the sum of the squares is 1 within 2^-20.
     """
     spare = f"2^{frexp(UNIT_NORM)[1] - 1}"  # exact: a rounded number would claim more than is proven
     phrases = [f"{', '.join(group)}: squares add up to 1, but for {spare}" for group in region.unit]

@@ -1,8 +1,8 @@
 """Branch and bound for the largest rounding error on a box: split the worst parts until the bound is tight.
 
 A part is a sub-box. It is split into the two branches of a condition, or halved in the input that lowers the bound
-most. It is finished when its bound is close to the largest error at a point. Its obstacle is the operation that
-prevents a bound, such as a division by a range that contains zero.
+most. It is finished when its bound is close to the largest error that was found at a sampled point. Its obstacle is the
+operation that prevents a bound, such as a division by a range that contains zero.
 """
 
 from dataclasses import dataclass, replace
@@ -77,7 +77,7 @@ class _Parts:
 
 
 class _BoundSearch:
-    """A search for the largest rounding error on a box: the problem, and the largest error found at a point so far."""
+    """A search for the largest rounding error on a box: the problem, and the largest error at points sampled so far."""
 
     def __init__(self, graph: OutputGraph, box: Array, region: Region, libm_ulp: float, centred: bool) -> None:
         self.centred = centred
@@ -253,8 +253,9 @@ def search(
     region : Region
         Restrictions of the inputs in the box.
     budget : int
-        The number of evaluated boxes after which no further batch is split. An output that is a polynomial may be
-        searched a second time, with mean value forms, and the budget then holds for each search.
+        The number of evaluated boxes after which the search ends. The boxes are evaluated in batches, and the last
+        batch may exceed the budget. An output that is a polynomial may be searched a second time, with mean value forms
+        (narrower intervals, see centred.py), and the budget then holds for each search.
     libm_ulp : float
         Largest error of sin, cos and atan2, in units in the last place.
     target : float, optional
@@ -317,10 +318,10 @@ def _narrow(run: _BoundSearch, parts: _Parts) -> NDArray[np.bool_]:
 
 
 def _spread(run: _BoundSearch, parts: _Parts) -> Array:
-    """Return, for each part, its largest width relative to the width of the whole box, over the inputs that matter.
+    """Return, for each part, its largest width in a few inputs, relative to the width of the whole box.
 
-    The operation that prevents a bound on the part, such as a division, has a finite bound only where the inputs that
-    matter have narrow ranges.
+    Only those inputs count on which the divisor or radicand of the part's obstacle depends. The obstacle is the
+    operation that prevents an error bound on the part; a bound exists only where these inputs have narrow ranges.
     """
     width = np.where(run.width > 0, run.width, 1.0)
     relative = (parts.boxes[1] - parts.boxes[0]) / width[:, None]
@@ -336,9 +337,10 @@ def _narrowest(run: _BoundSearch, parts: _Parts) -> tuple[tuple[float, ...], int
 
 
 def _result(run: _BoundSearch, parts: _Parts, settled: float) -> SearchResult:
-    """Return the result of a search that ends with the parts ``parts`` still unfinished.
+    """Return the result of a search that ends with ``parts``, the sub-boxes whose bounds splitting may still lower.
 
-    ``settled`` is the largest bound of the finished parts.
+    ``settled`` is the largest bound of the finished sub-boxes, which are not in ``parts``. They were not split again,
+    because their bounds were close to the error at a sampled point, or at most the target of the search.
     """
     bound = max(settled, float(parts.bound.max(initial=-1.0)), 0.0)
     pointwise, worst, obstacle = max(run.pointwise, 0.0), run.worst, -1

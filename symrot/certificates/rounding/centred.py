@@ -39,7 +39,12 @@ def _scaled_gradient(gradient: Array, values: Array) -> Array:
 
 
 class CentredForms:
-    """The mean value forms of the nodes of a graph, in their order; None for a node that is not a polynomial."""
+    """The mean value forms of the operations that compute an output, in the order of the operations.
+
+    The operations are the nodes of an OutputGraph. A mean value form encloses a polynomial on a box: it is the value at
+    the middle plus the sum of slopes on the box times deviations from the middle. An operation whose result is not a
+    polynomial in the inputs has None instead.
+    """
 
     def __init__(self, boxes: Array) -> None:
         self.boxes = boxes

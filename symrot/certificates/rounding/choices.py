@@ -48,7 +48,12 @@ def decide_branches(
 
 
 def narrow_to_branch(graph: OutputGraph, number: int, decision: NDArray[np.int8], computed: list[Array]) -> None:
-    """Shrink ranges in ``computed`` (an interval per node and box) to the decided branch of condition ``number``."""
+    """Shrink the ranges of the two values that condition ``number`` compares, on boxes where its branch is decided.
+
+    The ranges shrink to the values that lead to this branch. ``decision`` has an entry for each box: 1 if the condition
+    holds on the box, 0 if it does not hold, -1 if neither is decided. ``computed`` has an interval for each node and
+    box, which contains the computed values of the node; its entries are replaced.
+    """
     relation, i, j = graph.conditions[number]
     larger, smaller = _NOT_LESS[relation]
     # if x < y holds, the range of x is cut at the largest y, and that of y at the smallest x

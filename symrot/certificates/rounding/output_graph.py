@@ -66,7 +66,11 @@ class OutputGraph:
 
     @cached_property
     def is_polynomial(self) -> bool:
-        """Whether the output is a polynomial in the inputs, so that a mean value form can enclose it."""
+        """Whether the output is a polynomial in the inputs.
+
+        A polynomial can be enclosed on a box by its mean value form: the value at the middle of the box plus slopes on
+        the box times deviations from the middle.
+        """
         return all(node[0] in POLYNOMIAL for node in self.nodes)
 
     @cached_property

@@ -53,9 +53,11 @@ def off_unit(boxes: Array, region: Region, places: Sequence[str]) -> NDArray[np.
 
 
 def narrowed(boxes: Array, region: Region, places: Sequence[str]) -> Array:
-    """Return boxes shrunk to the allowed inputs in them, such as unit quaternions.
+    """Return ``boxes`` with the sides shortened so that the allowed inputs, such as unit quaternions, stay in them.
 
-    A range that contains no allowed value is not changed.
+    ``boxes`` has the shape (2, inputs, n): the least and the largest value of each input in n boxes. ``places`` names
+    the inputs, such as ``"q[0]"``. If a box contains no allowed value of an input, its side in this input is not
+    changed.
     """
     shrunk = boxes
     for group, numbers in zip(region.unit, _numbers(region, places), strict=True):

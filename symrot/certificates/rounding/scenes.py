@@ -45,7 +45,7 @@ class SceneInputs:
 def scene_problem(inputs: SceneInputs, operations: Operations) -> RoundingProblem:
     """Return the box and the restrictions that follow from a scene: fixed parameters, time span, unit quaternion.
 
-    The user adds the ranges of the other states.
+    The user adds the ranges of the states that the scene does not limit, such as the angular velocity.
     """
     symbols = {place: inputs.components[place][0] for place in operations.inputs}
     used = {place for _, index in operations.outputs for place in output_graph(operations, index).places}

@@ -68,11 +68,12 @@ def rounding_section(
 
         - "meaning", "assumptions": what a bound states, and what it presupposes; text.
         - "libm_ulp", "budget": the arguments. "box": ``{place: [low, high]}``.
-        - "unit_groups", "clearance": the fields ``unit`` and ``clearance`` of ``region``.
+        - "unit_groups": groups of inputs whose squares add up to 1, such as a quaternion (``region.unit``).
+        - "clearance": the least length of the arguments (y, x) of every atan2 (``region.clearance``).
         - "precisions": a list with an item for each function: its "precision", the hash of its operations
           ("operations_sha256"), its "unit" (2^-53 or 2^-24) and its "outputs". Each output has the fields of
-          :class:`OutputBound`, with "absolute" for ``bound`` and "modulo_turns" for ``turns``, and "units": the bound
-          in multiples of "unit", rounded up, as decimal text.
+          :class:`OutputBound`, with "absolute" for ``bound`` and "modulo_turns" for ``turns`` (whether the error of an
+          angle is measured modulo 2 pi), and "units": the bound in multiples of "unit", rounded up, as decimal text.
 
     Raises
     ------
@@ -154,7 +155,10 @@ def _units(value: Fraction) -> str:
 
 
 def box_of(section: Mapping[str, Any]) -> dict[str, tuple[Fraction, Fraction]]:
-    """Return the box on which the bounds in a section ``rounding`` hold: a range for each input, such as ``"q[1]"``."""
+    """Return the box on which the bounds in a certificate's section ``rounding`` hold.
+
+    It is a map from each input, such as ``"q[1]"``, to its range.
+    """
     return {
         place: (Fraction(float.fromhex(low)), Fraction(float.fromhex(high)))
         for place, (low, high) in section["box"].items()
@@ -162,14 +166,19 @@ def box_of(section: Mapping[str, Any]) -> dict[str, tuple[Fraction, Fraction]]:
 
 
 def region_of(section: Mapping[str, Any]) -> Region:
-    """Return the restrictions of inputs, such as unit norm, under which the bounds in a section ``rounding`` hold."""
+    """Return the restrictions of inputs under which the bounds in a certificate's section ``rounding`` hold.
+
+    An example is the unit norm of a quaternion.
+    """
     return Region(tuple(map(tuple, section["unit_groups"])), float.fromhex(section["clearance"]))
 
 
 def check_section(
     section: Mapping[str, Any], operations_double: Operations, operations_float: Operations | None, rerun: bool = False
 ) -> None:
-    """Check a ``rounding`` section by evaluating the error at single points; with ``rerun``, compute all bounds again.
+    """Check a certificate's section ``rounding`` at single points; with ``rerun``, compute all its bounds again.
+
+    At each point that the section stores for an output, the error is evaluated; the stored bound must not be below it.
 
     Raises
     ------
@@ -251,7 +260,10 @@ def check_bounds(
 def _check_precision(
     part: Mapping[str, Any], operations: Operations, box: Box, region: Region, libm_ulp: float
 ) -> None:
-    """Check the part of a ``rounding`` section about doubles or floats, by evaluating the error at single points."""
+    """Check one item of "precisions" in a section ``rounding``, by evaluating the error at single points.
+
+    The item has the bounds of the function for doubles, or of that for floats.
+    """
     name = operations.name
     # ``operations`` are those of the C function of this type
     if part["operations_sha256"] != operations.digest():

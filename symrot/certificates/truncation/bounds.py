@@ -50,7 +50,7 @@ Box = Mapping[str, tuple[Fraction, Fraction]]  # name of an input, such as "omeg
 # Without the defects, and with absolute values everywhere, this sum is a coefficient of the series Z with
 # Z = h f(start + Z) (the implicit Euler step).
 def truncation_bounds(rates: Program, method: Method, box: Box) -> dict[str, float]:
-    """Return, for each state, a bound of the difference between the exact motion and the exact formula of a step.
+    """Return, for each state, a bound of the difference between the motion and a step computed without rounding.
 
     Parameters
     ----------
@@ -67,7 +67,7 @@ def truncation_bounds(rates: Program, method: Method, box: Box) -> dict[str, flo
         If the steps are so large, or the box so wide, that no bound is found, if the rates contain a function whose
         intervals symrot cannot compute, or if they are no polynomials and the method has rounded coefficients.
     CertificateError
-        If the method does not have its order.
+        If the method does not have the order ``method.order``.
     """
     if isinstance(method, SteadyRotations):  # the certificate proves that the formula is the motion
         return {name: 0.0 for name, *_ in rates.signature.argument("y").components}
@@ -172,9 +172,10 @@ class _Problem:
             return [inf] * len(self.states)
 
     def advice(self, box: Box) -> str:
-        """Return a phrase for a message: which step sizes have bounds if those of ``box`` have none.
+        """Return a phrase that advises a smaller step, such as ``dt up to 0.01 s, or a smaller box``, for a message.
 
-        It names the first of half, a quarter, an eighth .. of dt for which all errors are bounded, if there is one.
+        The advised step is the first of half, a quarter, an eighth .. of dt for which all errors are bounded. If there
+        is none, the phrase names no size.
         """
         size = max(map(abs, box[SIZE]))
         for _ in range(HALVINGS):

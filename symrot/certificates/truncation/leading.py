@@ -42,7 +42,8 @@ def leading_terms(
 
     The truncation error, motion minus step, is a power series in the size h of the step. With n for the order of the
     method, it begins with h^(n+1). The result has the coefficients of h^(n+1) and h^(n+2), but none above h^9; each
-    coefficient is a list with a polynomial for each state. Intervals give tighter bounds of expanded rates.
+    coefficient is a list with a polynomial for each state. The rates are expanded because interval arithmetic then
+    bounds them more tightly.
 
     If the rates are no polynomials, or if n is 9 or more, the rates are returned as they are, without coefficients. If
     a Taylor coefficient of the motion has more than ``MOST_TERMS`` terms, only the expanded rates are returned.
@@ -51,12 +52,14 @@ def leading_terms(
     ----------
     rates : Program
         The right-hand side ``dy = f(t, y, p)``.
-    method : Method
-        The method of the step.
+    method : RungeKutta, TaylorSeries or WithDerivatives
+        The method of the step; ``WithDerivatives`` is one of the other two, whose step also computes derivatives of the
+        new state.
     states : sequence of str
         The names of the states.
     box : mapping
-        Ranges of t, dt, the states and the parameters, by name; inputs whose range is a number are no variables.
+        Ranges of t, dt, the states and the parameters, by name. An input whose range is a single number
+        is a constant in the polynomials.
     """
     orders = range(method.order + 1, min(method.order + 1 + EXACT_ORDERS, HIGHEST))
     if not orders or not is_polynomial(rates):

@@ -58,7 +58,8 @@ def _weight(tree: Tree, method: RungeKutta) -> list[Fraction]:
 def require_order(method: Method) -> tuple[Fraction, ...]:
     """Raise CertificateError if a method does not have the order ``method.order``; return defects of order conditions.
 
-    Entry k is the largest defect of trees with k + 1 nodes, 0 unless the method's coefficients are rounded decimals.
+    Each rooted tree gives an order condition. Its defect is the amount by which the method's coefficients violate it.
+    Entry k is the largest defect for the trees with k + 1 nodes; it is 0 unless the coefficients are rounded decimals.
     For a Taylor method, whose order needs no proof, all entries are 0; for an exact step there are no entries.
     Source: Hairer, Norsett, Wanner, Solving ODEs I, 2nd ed., theorem II.2.13.
     """
@@ -77,7 +78,10 @@ def require_order(method: Method) -> tuple[Fraction, ...]:
 
 
 def _defect(tree: Tree, method: RungeKutta, most: Fraction) -> Fraction:
-    """Return the defect of the order condition of one tree; raise CertificateError if it is larger than ``most``."""
+    """Return the defect of the order condition of one rooted tree: the amount by which the coefficients violate it.
+
+    CertificateError is raised if the defect is larger than ``most``.
+    """
     weights = _weight(tree, method)
     total = sum((b * weights[stage] for stage, b in method.weights.items()), Fraction(0))
     defect = abs(total - Fraction(1, _density(tree)))

@@ -1,1 +1,1 @@
-"""The decision whether a claim is true: its stages, hypotheses, conditions, and real points as counterexamples."""
+"""The decision of whether a claim is true: its stages, hypotheses, conditions, and real points as counterexamples."""

@@ -133,7 +133,7 @@ class Point:
         return Point(self.symbols, self.functions, {**self.definitions, name: node}, spent=self.spent)
 
     def with_slopes(self, variable: Node) -> "Point":
-        """Return a copy of the point whose values are dual numbers; their slopes are derivatives by ``variable``.
+        """Return a copy of the point whose values are dual numbers, with derivatives with respect to ``variable``.
 
         The variable is a symbol, ``f(t)`` or ``diff(f(t), t)``. Raise UndefinedValue if it has no value at the point,
         or if the copy would be for more than MOST_NESTED nested derivatives.

@@ -165,10 +165,11 @@ class Turning:
         with damping, and final*t + rest*t^2 without. The exponential needs ln 2, which has 16 bits more (``_GUARD``).
         """
         if bits not in self._scaled:
-            from mpmath import mp
+            from symrot.formula.precision import bits as precision
+            from symrot.formula.precision import mp
 
             places, (final, rest, decay) = bits + _BITS, self._exact
-            with mp.workprec(places + 8):
+            with precision(places + 8):
                 circle = 2 * int(mp.pi * mp.mpf(2) ** places)
             turns = [
                 (x.numerator * self._factor.numerator << (bits + places))

@@ -130,7 +130,7 @@ class Constants:
         self._turns: dict[bool, tuple[int, int, list[float]]] = {}
 
     def head(self, transverse: bool) -> list[float]:
-        """Return the first 8 numbers of the C struct `axial`, which all motions of the body share.
+        """Return the first 8 numbers of the C type ``axial`` (in :file:`axial.h`), which all motions of the body share.
 
         In order: 1 if the rotation about the driven axis is damped, else 0; the time scale, which is always 1; 1 if
         ``transverse`` (the body also rotates about an axis normal to the driven axis), else 0; the time, s, before
@@ -140,12 +140,13 @@ class Constants:
         return [float(bool(self._decay)), 1.0, float(transverse), *self._head]
 
     def moving(self, rate: Fraction | float, transverse: bool) -> list[float]:
-        """Return the 18 numbers of the C struct `axial` that depend on the initial rate about the driven axis, rad/s.
+        """Return the 18 constants for C that depend on the initial angular velocity about the driven axis, rad/s.
 
-        The first four, the member `axial`, are the initial rate, the initial acceleration, the final rate, and the
-        initial minus the final rate. The others are the constants of an angle: half the angle of rotation (member
-        `half`) or, if the body also rotates about an axis normal to the driven axis (``transverse``), the angle by
-        which the transverse angular velocity rotates in the body (member `lag`).
+        They are stored in a struct of :file:`axial.h`. The first four describe the rotation about the driven axis: the
+        initial angular velocity, the initial angular acceleration, the final angular velocity, and the initial minus
+        the final angular velocity. The other 14 are the constants of an angle. If the body also rotates about an axis
+        normal to the driven axis (``transverse``), it is the angle by which the transverse angular velocity rotates in
+        the body, member ``lag`` of the struct. Otherwise it is half the angle of rotation, member ``half``.
         """
         turn, bits, fixed = self._turns.get(transverse) or self._turning(transverse)
         top, bottom = rate.as_integer_ratio()

@@ -68,10 +68,10 @@ def fixed_body(moments: Sequence[Fraction], axes: Sequence[Fraction]) -> NDArray
 def rates_of_body(body: NDArray[np.uint64], omega: Floats) -> tuple[Floats, Floats, Doubtful]:
     """Return (rates, defects, doubtful) of the motions of one body from n angular velocities ``omega``, shape (n, 3).
 
-    ``rates``, shape (n, 6), are the components along the principal axes: hi, lo of the first, then of the others.
-    ``defects``, shape (n, 2), are hi and lo of |L|^2 - 2 T I_mid over (largest moment times largest rate)^2.
-    ``doubtful`` are the indices of the motions for which the last digit of a number is uncertain. ``body`` comes from
-    :func:`fixed_body`.
+    ``omega`` is in rad/s, body components. ``rates``, shape (n, 6), are the components along the principal axes: hi, lo
+    of the first, then of the others. ``defects``, shape (n, 2), are hi and lo of |L|^2 - 2 T I_mid over (largest moment
+    times largest rate)^2. ``doubtful`` are the indices of the motions for which the last digit of a number is
+    uncertain. ``body`` comes from :func:`fixed_body`.
     """
     n = len(omega)
     rates, exact, doubtful = np.empty((n, 6)), np.empty((n, 8)), np.empty(n, np.uint8)
@@ -110,8 +110,10 @@ class PrincipalBodies(NamedTuple):
 def principal_bodies(entries: Sequence[Column], omega: Floats) -> PrincipalBodies | None:
     """Return the constants of n free bodies, whose principal axes are computed from their inertia tensors.
 
-    ``entries`` are the tensor components xx, yy, zz, xy, xz and yz, kg m^2; a Fraction holds for all bodies. The result
-    is None if a Fraction is nonzero and not between SMALLEST and LARGEST in absolute value.
+    ``entries`` are the tensor components xx, yy, zz, xy, xz and yz, kg m^2; a Fraction holds for all bodies. ``omega``,
+    shape (n, 3), rad/s, has the components of the angular velocities along the axes of these tensors; ``rates`` and
+    ``exact`` of the result depend on it. The result is None if a Fraction is nonzero and not between SMALLEST and
+    LARGEST in absolute value.
     """
     n, tensors, arrays = len(omega), _Tensors(terms=_TERMS), []
     for k, entry in enumerate(entries):

@@ -112,7 +112,7 @@ class FreeRigidBody:
     def motion(self, omega0: Sequence[Number], quaternion0: Sequence[Number]) -> ExactMotion:
         """Return the motion from an initial state: ``omega0``, rad/s, and ``quaternion0``, body to space.
 
-        Both refer to the given axes of the body.
+        Both refer to the body axes, to which the inertia tensor refers; these need not be principal axes.
         """
         omega_before, omega, exact = self._rates
         if omega0 is not omega_before:

@@ -1,6 +1,6 @@
-"""A free symmetric body with a rotor along its axis, at any time, in closed form: the sum of two steady rotations.
+"""Closed form of the motion of a free symmetric body with a rotor along its axis: the product of two steady rotations.
 
-The angular momentum of the rotor relative to the body is constant.
+The closed form gives the motion at any time. The angular momentum of the rotor relative to the body is constant.
 
 The formulas are in :file:`gyrostat.c`. Source: Landau & Lifshitz, Mechanics, 3rd ed., section 33, for a body without a
 rotor.

@@ -12,9 +12,6 @@ typedef struct {
     dd ya, yb; /* zeros of theta1 and theta2 */
 } nutation;
 
-/* Distance of S3 beyond which the sum of the other roots follows from c, not from b. */
-#define FAR 16.0
-
 static double outer_root(double b, double c, double d, double x)
 {
     for (int n = 0; n < 200; ++n) {
@@ -57,8 +54,12 @@ static void find_roots(nutation *n, dd w2, dd y)
     const dd m2 = dd_scale(n->pull, 2.0), one_less = dd_scale(dd_sub(n->c, n->s), 0.5);
     /* x^3 + b x^2 + c x + d for x = s - s0; d <= 0 */
     const dd b = dd_div(dd_sub(dd_add(w2, dd_square(n->spin)), dd_mul(dd_scale(m2, 2.0), one_less)), m2);
-    dd c = dd_add(dd_mul(m2, dd_mul(n->s, n->c)), dd_scale(dd_mul(w2, one_less), 2.0));
-    c = dd_div(dd_sub(dd_scale(dd_mul(n->spin, y), 2.0), c), m2);
+    const dd fallen = dd_mul(m2, dd_mul(n->s, n->c)), turning = dd_scale(dd_mul(w2, one_less), 2.0);
+    const dd carried = dd_scale(dd_mul(n->spin, y), 2.0);
+    const dd c = dd_div(dd_sub(carried, dd_add(fallen, turning)), m2);
+    /* sums of the absolute values of the summands of b and c, to which rounding errors are proportional */
+    const double b_size = (w2.hi + n->spin.hi*n->spin.hi)/m2.hi + 2.0*fabs(one_less.hi);
+    const double c_size = (fallen.hi + fabs(turning.hi) + fabs(carried.hi))/m2.hi;
     const dd size = dd_div(dd_square(n->speed), m2), d = dd_negative(size);
     const double far = fmax(fabs(b.hi), fmax(sqrt(fabs(c.hi)), cbrt(fabs(d.hi))));
     double first = d.hi == 0.0 && c.hi >= 0.0 ? 0.0 : outer_root(b.hi, c.hi, d.hi, n->c.hi*1.0000001 + 1e-300);
@@ -84,8 +85,9 @@ static void find_roots(nutation *n, dd w2, dd y)
     } else {
         x3 = polished(b, c, d, last);
         const dd product = dd_div(size, x3); /* x1 x2 <= 0 */
-        /* x1 + x2; under a weak pull, b and x3 are large and would cancel */
-        const dd sum = x3.hi < -FAR ? dd_div(dd_sub(c, product), x3) : dd_negative(dd_add(b, x3));
+        /* x1 + x2; b and x3 would cancel under a weak pull, and where both roots are close to s0, as near the vertical */
+        const int from_c = c_size + fabs(product.hi) < (b_size - x3.hi)*-x3.hi;
+        const dd sum = from_c ? dd_div(dd_sub(c, product), x3) : dd_negative(dd_add(b, x3));
         n->gap12 = dd_sqrt(dd_sub(dd_square(sum), dd_scale(product, 4.0)));
         const dd larger = dd_scale(dd_add(n->gap12, dd_abs(sum)), 0.5);
         x1 = sum.hi >= 0.0 ? larger : dd_negative(ratio(product, larger));

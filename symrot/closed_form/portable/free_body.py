@@ -1,7 +1,7 @@
 """The motion of a free body, computed by mpmath and NumPy without a C compiler.
 
-The formulas are those of :file:`free_body.h`. The defect of a motion is |L|^2 - 2 T I_mid, where L is the angular
-momentum, T the kinetic energy and I_mid the middle moment of inertia.
+The formulas are those of :file:`free_body.h`. In this module the number |L|^2 - 2 T I_mid of a motion is called its
+defect: L is the angular momentum, T the kinetic energy and I_mid the middle moment of inertia.
 """
 
 from collections.abc import Sequence
@@ -10,7 +10,6 @@ from functools import partial
 from typing import Any
 
 import numpy as np
-from mpmath import mp, mpf
 
 from symrot.closed_form.build import Floats
 from symrot.closed_form.portable.phases import (
@@ -27,9 +26,12 @@ from symrot.closed_form.portable.phases import (
     vector,
 )
 from symrot.closed_form.portable.quaternions import Axes, mapping, matrix_quaternion, unit
+from symrot.formula.precision import digits, mp
 from symrot.kinematics.hamilton import conjugate, hamilton
 
 __all__ = ["PortableFreeBody"]
+
+mpf = mp.mpf
 
 NEGLIGIBLE = mpf(10) ** -150  # size, relative to the largest component of omega, that counts as zero
 
@@ -49,8 +51,8 @@ class PortableFreeBody:
     quaternion : list of 8 floats
         Initial attitude, body to space, of any norm except zero.
     exact : list of 8 floats, or None
-        I2 - I3, I3 - I1, I1 - I2, and the defect divided by the square of the largest moment times the largest
-        component of ``omega``; None if the sums in ``inertia`` and ``omega`` are exact.
+        I2 - I3, I3 - I1, I1 - I2, and the defect |L|^2 - 2 T I_mid divided by (largest moment times largest component
+        of ``omega``)^2; None if the sums in ``inertia`` and ``omega`` are exact.
     axes : list of 26 floats, or None
         The matrix, row by row, that converts components along the principal axes to components along the body axes, and
         its unit quaternion; None if the body axes are principal axes.
@@ -61,7 +63,7 @@ class PortableFreeBody:
         If a moment is not positive, or if the quaternion is zero.
     """
 
-    @mp.workdps(DIGITS)  # type: ignore[untyped-decorator]
+    @digits(DIGITS)
     def __init__(
         self, inertia: list[float], omega: list[float], quaternion: list[float], exact: list[float] | None,
         axes: list[float] | None,

@@ -1,14 +1,17 @@
 """The motion of a gyrostat by mpmath and NumPy, without a C compiler; formulas of :file:`gyrostat.h`."""
 
 import numpy as np
-from mpmath import mp, mpf
 
 from symrot.closed_form.build import Floats
 from symrot.closed_form.portable.phases import DIGITS, Phase, number, power_of_two, vector
 from symrot.closed_form.portable.quaternions import mapping, matrix_quaternion, unit
+from symrot.formula.precision import digits, mp
 from symrot.kinematics.hamilton import conjugate, hamilton
 
 __all__ = ["PortableGyrostat"]
+
+
+mpf = mp.mpf
 
 
 class PortableGyrostat:
@@ -22,7 +25,7 @@ class PortableGyrostat:
 
     regime = "steady"
 
-    @mp.workdps(DIGITS)  # type: ignore[untyped-decorator]
+    @digits(DIGITS)
     def __init__(
         self, moments: list[float], rotor: list[float], omega: list[float], quaternion: list[float], axis: list[float]
     ) -> None:

@@ -1,14 +1,19 @@
 """The motion of a symmetric heavy top, computed by mpmath and NumPy without a C compiler.
 
-The formulas are those of :file:`heavy_top.h`. The Cayley-Klein parameters of the attitude, alpha = q0 + i q3 and
-beta = q1 + i q2, are quotients of theta series. Numbers have 160 digits, so the constants are computed directly from
-the roots of the cubic, without the rearrangements that doubles need.
+The formulas are those of :file:`heavy_top.h`. The Cayley-Klein parameters of the attitude, ``alpha = q0 + 1j*q3`` and
+``beta = q1 + 1j*q2``, are quotients of theta series times phase factors. Numbers have 160 digits, so the constants are
+computed directly from the roots of the cubic, without the rearrangements that doubles need.
+
+The form of the series depends on the parameter m of the elliptic functions, whose quarter periods are ``K = K(m)`` and
+``K' = K(1 - m)``, and whose argument u grows linearly with time. The attribute ``regime`` has its name: ``steady`` for
+a top that rotates about its vertical axis, without any series; ``circular`` for m < SWITCH, with sines and cosines of
+the angle z = pi u/(2 K); ``hyperbolic`` for other m < 1, with hyperbolic functions of v = pi u/(2 K'); ``separatrix``
+for ``m = 1``, the motion that tends to the upright position, with hyperbolic functions of the same v.
 """
 
 from typing import Any
 
 import numpy as np
-from mpmath import mp, mpc, mpf
 
 from symrot.closed_form.build import Floats
 from symrot.closed_form.portable.phases import (
@@ -23,9 +28,12 @@ from symrot.closed_form.portable.phases import (
     vector,
 )
 from symrot.closed_form.portable.quaternions import Axes, mapping, unit
+from symrot.formula.precision import digits, mp
 from symrot.kinematics.hamilton import conjugate, hamilton
 
 __all__ = ["PortableHeavyTop"]
+
+mpc, mpf = mp.mpc, mp.mpf
 
 DIGITS = 160  # digits of the constants
 EQUAL = mpf(10) ** -70  # closer roots, relative to their size, count as equal: equal roots are found to about 80 digits
@@ -41,7 +49,7 @@ class PortableHeavyTop:
     number. ValueError is raised if the moment about a transverse axis is not positive, or if the quaternion is zero.
     """
 
-    @mp.workdps(DIGITS)  # type: ignore[untyped-decorator]
+    @digits(DIGITS)
     def __init__(
         self, moments: list[float], pull: list[float], omega: list[float], quaternion: list[float],
         space: list[float], axes: list[float] | None,
@@ -165,23 +173,31 @@ class PortableHeavyTop:
         return numerators, kappas, leads, speed, v, below
 
     def _orders(self, i: int) -> list[int]:
-        """Return the multiples n in the series of alpha (i = 0) or beta (i = 1): 1, 3, 5, .. or 0, 2, 4, .."""
+        """Return the multiples n of z or v in the theta series of alpha or beta: 1, 3, 5, .. or 0, 2, 4, ..
+
+        ``i`` is 0 for alpha, 1 for beta. The arguments z and v are explained in the module's docstring.
+        """
         odd = self.regime == "circular" or i == 0
         return [2 * n + odd for n in range(TERMS)]
 
     def _signs(self, i: int) -> tuple[int, int]:
-        """Return the signs (a, b) of the derivatives f' = a n g and g' = b n f in :meth:`_functions`."""
+        """Return the signs (a, b) in the derivatives f' = a n g and g' = b n f of the functions of :meth:`_functions`.
+
+        Example: f = sin(n z) and g = cos(n z) have the derivatives n g and -n f, so the signs are (1, -1). ``i`` is 0
+        for alpha, 1 for beta.
+        """
         if self.regime != "circular":
             return 1, 1
         return (1, -1) if i == 0 else (-1, 1)
 
     def _functions(self, i: int, place: Any) -> tuple[list[Any], list[Any], list[Any], list[Any]]:
-        """Return the functions in the theta series of a Cayley-Klein parameter, at the argument ``place``.
+        """Return the values at ``place`` of the functions f, g, f', g' in the theta series of a Cayley-Klein parameter.
 
-        i = 0 means alpha = q0 + i q3, i = 1 means beta = q1 + i q2. The argument is an angle z if ``regime`` is
-        "circular", otherwise v with z = i v. The four lists are the functions f in the series of the real part and g of
-        the imaginary part, then their derivatives. For alpha and an angle z they are sin(n z), cos(n z), n cos(n z) and
-        -n sin(n z) with n = 1, 3, 5, ..
+        ``i`` is 0 for alpha, 1 for beta. ``place`` is a value of z in the regime circular, otherwise of v. The series
+        of the real part is a sum of multiples of the functions f, that of the imaginary part a sum of multiples of the
+        functions g; f' and g' are their derivatives with respect to z or v. Each of the four is a list with one entry
+        for each n of :meth:`_orders`. For alpha in the regime circular they are sin(n z), cos(n z), n cos(n z) and
+        ``-n sin(n z)`` with n = 1, 3, 5, ..
         """
         orders, weights = self._orders(i), self._weights(i)
         sine, cosine = (mp.sin, mp.cos) if self.regime == "circular" else (mp.sinh, mp.cosh)
@@ -194,7 +210,10 @@ class PortableHeavyTop:
                 [back * o * x for o, x in zip(orders, f, strict=True)])  # fmt: skip
 
     def _weights(self, i: int) -> list[Any]:
-        """Return the factors of the functions: powers of the nome, or ones if ``regime`` is "circular"."""
+        """Return the factors of f and g in :meth:`_functions`: powers of the nome, or ones in the regime circular.
+
+        There is one factor for each n. ``i`` is 0 for the series of alpha, 1 for that of beta.
+        """
         if self.regime == "circular":
             return [mpf(1)] * TERMS
         powers = [n * (n + 1) if i == 0 else n * n for n in range(TERMS)]
@@ -206,8 +225,13 @@ class PortableHeavyTop:
     ) -> None:  # fmt: skip
         """Set the constant factors of the theta series so that they give the initial state at the start.
 
-        ``start`` is [alpha, beta], the Cayley-Klein parameters q0 + i q3 and q1 + i q2 at the start; ``across`` is
-        w1 + i w2 and ``spin`` is w3. The other arguments are results of :meth:`_circular` or :meth:`_hyperbolic`.
+        ``start`` is [alpha, beta] at the start; ``across`` is w1 + 1j*w2 and ``spin`` is w3, both at the start and in
+        units of ``scale``. The other arguments are the results of :meth:`_circular` or :meth:`_hyperbolic`. Three of
+        them have an entry for alpha and one for beta: ``numerators``, pairs (coefficients of f, coefficients of g) of
+        the functions of :meth:`_functions`; ``kappas``, the constant rates of the phases of the factors exp(1j*phase)
+        of the series; ``leads``, phases in revolutions at the start, which are subtracted. ``speed`` is the time
+        derivative of z or v, ``place`` is z or v at the start, and ``below`` is the pair (value, derivative) of the
+        series in the denominator at ``place``.
         """
         alpha, beta = start
         initial_rates = [
@@ -269,9 +293,9 @@ class PortableHeavyTop:
     def _values(self, t: Floats) -> tuple[Any, Any, Floats]:
         """Return ((alpha, beta), (their time derivatives), phase) at the times t.
 
-        alpha = q0 + i q3 and beta = q1 + i q2 are not normalised, and lack the factors exp(i angle) that
-        :meth:`evaluate` applies. ``phase`` is the phase of the elliptic functions in half revolutions, less a whole
-        number of them; it is 0 in the regimes steady, circular and separatrix.
+        alpha = q0 + 1j*q3 and beta = q1 + 1j*q2 are not normalised, and lack the factors exp(1j*angle) that
+        :meth:`evaluate` applies. In the regime hyperbolic, ``phase`` is the argument of the elliptic functions divided
+        by 2 K, minus the nearest whole number; in the other regimes (see the module's docstring) it is 0.
         """
         none = np.zeros_like(t)
         if self.regime == "steady":
@@ -291,7 +315,11 @@ class PortableHeavyTop:
         return (*self._summed(pairs), whole)
 
     def _summed(self, pairs: Any) -> tuple[Any, Any]:
-        """Return ([alpha, beta], [their time derivatives]) from the values of f and g in :meth:`_functions`."""
+        """Return ([alpha, beta], [their time derivatives]) at several times, by summing the theta series.
+
+        ``pairs`` has a list for alpha and a list for beta. Each list has a pair (f, g) for each term of the series: the
+        values of the functions f and g of :meth:`_functions`, arrays with one number for each time.
+        """
         values, rates = [], []
         for i, functions in enumerate(pairs):
             part = slice(2 * i, 2 * i + 2)

@@ -6,15 +6,17 @@ The formulas are the same as in :file:`circular.h` and :file:`stages.h`.
 from typing import Any, NamedTuple
 
 import numpy as np
-from mpmath import mp, mpf
 
 from symrot.closed_form.arithmetic.double_double import two_product, two_sum
 from symrot.closed_form.build import Floats
+from symrot.formula.precision import mp
 
 __all__ = [
     "DIGITS", "SWITCH", "TERMS", "Phase", "hyperbolic", "multiples", "number", "power_of_two", "quarter_periods",
     "turned_by", "vector",
 ]  # fmt: skip
+
+mpf = mp.mpf
 
 DIGITS = 120  # digits of the constants, enough to remain accurate after any cancellation
 TERMS = 8  # terms of a series
@@ -34,7 +36,7 @@ def vector(pairs: list[float]) -> list[Any]:
 
 
 def power_of_two(value: Any) -> Any:
-    """Return the smallest power of two above a positive number, or 1 for zero: 5 gives 8."""
+    """Return the smallest power of two greater than a positive number, or 1 for zero: 5 gives 8, and 8 gives 16."""
     return mpf(2) ** int(mp.frexp(value)[1]) if value else mpf(1)
 
 

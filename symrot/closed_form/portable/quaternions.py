@@ -5,13 +5,15 @@ from fractions import Fraction
 from typing import Any
 
 import numpy as np
-from mpmath import mp, mpf
 
 from symrot.closed_form.arithmetic.frames import quaternion_of
 from symrot.closed_form.build import Floats
 from symrot.closed_form.portable.phases import vector
+from symrot.formula.precision import mp
 
 __all__ = ["UNIT", "Axes", "mapping", "matrix_quaternion", "unit"]
+
+mpf = mp.mpf
 
 UNIT = [mpf(1), mpf(0), mpf(0), mpf(0)]
 

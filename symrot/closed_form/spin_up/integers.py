@@ -136,7 +136,11 @@ class Integers:
 
     @cached_property
     def _resonance(self) -> Quaternion:
-        """The rotation of the rotating axes from the start to resonance (Omega = 0), in units of 2^-FIXED."""
+        """The quaternion of the rotation of the rotating axes from the start of the motion to resonance (Omega = 0).
+
+        The rotating axes rotate with the transverse angular velocity of the body. The components of the quaternion are
+        integers in units of 2^-FIXED.
+        """
         side, sweep = self._side(self._start), self._sweep
         if not side:
             return conjugate(self._near.quaternion(self._x(self._start)))
@@ -147,9 +151,9 @@ class Integers:
     def _begin(self, side: int) -> tuple[Fraction, Fraction, Quaternion]:
         """Return (time, Omega, rotation) where the asymptotic series before or after resonance begin to be used.
 
-        ``side`` is -1 before resonance (axial rate Omega < 0) and 1 after it. Omega is the axial rate at this time; the
-        rotation is that of the rotating axes from the start to this time. For a motion that starts on this side of
-        resonance, the result is 0, the initial axial rate, and the identity.
+        ``side`` is -1 before resonance (axial rate Omega < 0) and 1 after it. Omega is the axial rate at this time. The
+        rotation is the quaternion of the rotation of the rotating axes from the start of the motion to this time. For a
+        motion that starts on this side of resonance, the result is 0, the initial axial rate, and the identity.
         """
         if self._side(self._start) == side:
             return Fraction(0), self._start, ONE

@@ -1,10 +1,10 @@
 """A symmetric body under a constant torque about its axis, at any time, in closed form.
 
 The transverse angular velocity, normal to the axis, has the constant length W. The rotating axes are axes that rotate
-with it: the first one points along the transverse angular velocity, the third one along the torque. Their angular
-velocity has the components ``(W, 0, Omega)`` along themselves. The axial rate ``Omega = (C/A) w3`` is zero when w3 is,
-the body's rate about its axis; C and A are the moments of inertia about this axis and about an axis normal to it. Omega
-grows at the constant rate s (the sweep rate). The time at which Omega is zero is called resonance. The components of
+with it: the first one points along the transverse angular velocity, the third one along the torque. The components of
+their angular velocity along these axes are ``(W, 0, Omega)``. The axial rate is ``Omega = (C/A) w3``: w3 is the body's
+rate about its axis, and C and A are the moments of inertia about this axis and about an axis normal to it. Omega grows
+at the constant rate s (the sweep rate). The time at which w3 and Omega are zero is called resonance. The components of
 the attitude of the rotating axes are parabolic cylinder functions of the scaled time ``x = Omega/sqrt(s)`` with the
 parameter ``kappa = W/sqrt(s)``. They are computed by asymptotic series far from resonance and by Taylor series near it.
 

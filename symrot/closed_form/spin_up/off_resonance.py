@@ -1,10 +1,11 @@
 """Rotation of the rotating axes of a driven symmetric body between two times far from resonance, in exact arithmetic.
 
-These axes rotate with the body's transverse angular velocity, whose length is W; their own angular velocity is
-``(W, 0, Omega)``, with ``Omega = Omega0 + s t`` (see :mod:`symrot.closed_form.spin_up.motion`). Resonance is at
-Omega = 0. The axes rotate about a vector n (see :mod:`symrot.closed_form.spin_up.series`), by the integral of their
-angular speed ``S = sqrt(Omega^2 + W^2)`` plus the change of a small angle delta. The integral over a time t is, with
-S0 = S at the start,
+The rotating axes are not fixed in the body: they rotate with the body's transverse angular velocity, whose length is W.
+Their own angular velocity is ``(W, 0, Omega)``, with ``Omega = Omega0 + s t`` (see
+:mod:`symrot.closed_form.spin_up.motion`). Resonance is at Omega = 0. Far from it, the angular velocity of these axes
+stays near a vector n that is fixed in space (see :mod:`symrot.closed_form.spin_up.series`). Between two times the axes
+rotate about n by the integral of their angular speed ``S = sqrt(Omega^2 + W^2)``, plus the change of delta. The angle
+delta is a small function of Omega. The integral over a time t is, with S0 = S at the start,
 
     t/(2 D) (E sqrt(1 + z^2) + W^2 asinh(z)/z),  E = S0 S + Omega0 Omega,  D^2 = (W^2 + E)/2,  z = s t/(2 D).
 
@@ -111,8 +112,8 @@ class Sweep:
     def delta(self, omega: Fraction) -> float:
         """Return the small angle delta, rad, at the axial rate ``omega``.
 
-        Between two times the rotating axes rotate about n by the integral of their angular speed over time plus the
-        change of delta.
+        The rotating axes rotate with the body's transverse angular velocity. Between two times they rotate, about the
+        vector n of :meth:`axes`, by the integral of their angular speed over time plus the change of delta.
         """
         _, cosine, y = self._direction(omega)
         return cosine * _polynomial(self.series.e, y)
@@ -120,8 +121,8 @@ class Sweep:
     def axes(self, omega: Fraction) -> Quaternion:
         """Return the rotation that maps the third rotating axis to n, at the axial rate ``omega``.
 
-        n is a vector, fixed in space, near the direction of the angular velocity: the rotating axes rotate about n. The
-        components of n along these axes come from the polynomials in ``self.series``.
+        n is a vector, fixed in space, near the direction of the angular velocity of the rotating axes, which rotate
+        about n. The components of n along these axes come from the polynomials in ``self.series``.
         """
         sine, cosine, y = self._direction(omega)
         g, c = _polynomial(self.series.g, y), _polynomial(self.series.c, y)

@@ -1,8 +1,8 @@
 """Attitude of the rotating axes of a driven symmetric body near resonance, by Taylor series about evenly spaced points.
 
-These axes rotate with the transverse angular velocity (see :mod:`symrot.closed_form.spin_up.motion`). Their own angular
-velocity is ``(kappa, 0, x)``, along themselves, where x is the scaled time. Their attitude q, with ``q = 1`` at x = 0,
-is given by ``alpha = q0 + i q3`` and ``beta = q1 + i q2``, with
+The rotating axes rotate with the body's transverse angular velocity (see :mod:`symrot.closed_form.spin_up.motion`).
+Their own angular velocity has the components ``(kappa, 0, x)`` along these axes, where x is the scaled time. Their
+attitude q, with ``q = 1`` at x = 0, is given by ``alpha = q0 + i q3`` and ``beta = q1 + i q2``, with
 
     2 alpha' = i x alpha - kappa beta,  2 beta' = kappa alpha - i x beta.
 
@@ -27,7 +27,8 @@ PIECES = 4
 DEGREE = 19
 """Degree of the Taylor polynomials of the attitude near resonance, in the scaled time x.
 
-On an interval of half width 1/8, the next term is near (r/2)^20/20!/8^20 < 2e-20, where r < 13.5 is the speed.
+On an interval of half width 1/8, the next term is near (r/2)^20/20!/8^20 < 2e-20, where r = sqrt(kappa^2 + x^2) < 13.5
+is the angular speed of the rotating axes.
 """
 
 _TERMS = 34  # terms of a series in integers

@@ -100,10 +100,13 @@ def _first(share: float, v: float) -> Floats:
 
 
 def _excess(share: float, v: float, h: Floats) -> Floats:
-    """Return e = delta r/x at the values of y in :func:`_nodes`, where delta is the small angle of rotation about n.
+    """Return e = delta r/x at the values of y in :func:`_nodes`, where delta is the small part of the angle about n.
 
-    The symbols are those of the module's docstring. ``share`` is kappa^2/radius2, and ``v`` is 1/radius2. ``h`` are the
-    coefficients of the polynomial in y with ``d delta/dx = kappa^2 h/r^5``, lowest power first.
+    The symbols are those of the module's docstring: the rotating axes have the angular velocity (kappa, 0, x) of length
+    r, and rotate about the vector n by the integral of r over the scaled time x, plus the change of delta. The variable
+    is y = radius2/r^2, where radius2 is the least r^2 for which the series are used. ``share`` is kappa^2/radius2, and
+    ``v`` is 1/radius2. ``h`` are the coefficients of the polynomial in y with ``d delta/dx = kappa^2 h/r^5``, lowest
+    power first.
     """
     powers = _nodes()[1]
     if share >= _SMALL:  # from x = 0

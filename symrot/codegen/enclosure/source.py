@@ -118,7 +118,8 @@ def _rounded_disc(system: Recurrences, number: int, places: Mapping[str, str], l
     """Return the C expression of a disc that contains a quantity's exact value; its centre is the computed value.
 
     ``number`` is the index of the quantity in ``system.series``. ``linear`` has the indices of the quantities that
-    depend on t alone, each with whether it is linear in t. ``places`` maps the name of a parameter to C.
+    depend on t alone, each with whether it is linear in t. ``places`` maps the name of a parameter to its C text, such
+    as ``p[1]``.
     """
     # the low part of the time is added to sums, and to the phases of the rule clock
     series, disc = system.series[number], _disc(system, number, places)
@@ -167,7 +168,7 @@ def _disc(system: Recurrences, number: int, places: Mapping[str, str]) -> str:
     ``number`` is the index of the quantity in ``system.series``. The values are those at complex times within ``reach``
     of t, for states within ``radius`` of y; t, reach, y and radius are variables of the C code. For the square of
     quantity 2, whose disc is d2, the expression is ``symrot_disc_square(d2)``. ``places`` maps the name of a parameter
-    to C, such as ``p[1]``.
+    to its C text, such as ``p[1]``.
     """
     series = system.series[number]
     own = [f"d{operand}" for operand in value_operands(series)]

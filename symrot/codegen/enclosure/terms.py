@@ -107,10 +107,11 @@ def functions_of_time(enclosure: Enclosure) -> dict[int, bool]:
 
 
 def rounded_terms(enclosure: Enclosure) -> Enclosure | None:
-    """Return ``enclosure`` with only the terms of the rates that the rounding of a phase may change much.
+    """Return the terms of the rates that contain a phase, a nonlinear function of t inside a divisor, root or function.
 
-    A phase is a nonlinear function of t inside a divisor, a root or a function: t^2 - 25 in 1/((t^2 - 25)^2 + w^2). The
-    result is None if there is no such term.
+    Example: the phase t^2 - 25 in 1/((t^2 - 25)^2 + w^2). A rounding error of the phase may change such a term much.
+    ``enclosure`` lists the terms of the rates dy/dt that must be bounded; the result, another Enclosure, lists only the
+    terms that contain a phase. It is None if there are no such terms.
     """
     # linear phases and the functions of the rule clock are evaluated with a correction of their rounding errors
     linear = functions_of_time(enclosure)

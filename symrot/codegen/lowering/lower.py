@@ -193,7 +193,12 @@ def _numbered(
     formulas: Sequence[Node],
     parameter_argument: str,
 ) -> Lowered:
-    """Return a program in which each constant is a parameter ``p0, p1, ..``, with the formulas of the parameters."""
+    """Return a program in which each constant is a parameter ``p0, p1, ..``, with the formulas of the parameters.
+
+    ``hoisted`` maps the formula of each constant to its preliminary name; the new names are numbered in order of use,
+    and ``parameter_argument`` is the start of each, here ``p``. ``temporaries`` are pairs (name, formula) in order of
+    computation. ``targets`` are the names of the outputs, and ``formulas`` are their formulas in the same order.
+    """
     # preliminary name of a constant (a value of hoisted) -> parameter, numbered by first use
     order: dict[str, str] = {}
     for node in [node for _, node in temporaries] + list(formulas):

@@ -1,4 +1,8 @@
-"""The head comment of every emitted file: title, arguments, domain, certificate, cost, derivation and release."""
+"""The head comment of every emitted file: title, arguments, domain, contract, cost, derivation and release.
+
+The contract, present in C files only, names the certificate (the file with proofs and error bounds of the code), the
+assumptions of these proofs, and the compiler flags under which they hold.
+"""
 
 import re
 from collections.abc import Iterable, Sequence

@@ -201,8 +201,12 @@ def _reserved(program: Program, real: Real) -> set[str]:
 
 
 def _due(needed: set[str], waiting: dict[str, tuple[set[str], list[str]]]) -> list[str]:
-    """Take the statements that compute the values ``needed`` out of ``waiting``, and return the lines of C code."""
-    # waiting: value -> (names that its statement needs, lines); statements that they need are due too
+    """Remove the statements that compute the values ``needed`` from ``waiting``, and return their lines of C code.
+
+    ``waiting`` maps the name of each value that is not yet computed to a pair: the names that its statement needs, and
+    the lines of the statement. If a removed statement needs other values in ``waiting``, their statements are removed
+    too.
+    """
     for name, (of, _) in reversed(waiting.items()):
         if name in needed:
             needed = needed | of

@@ -1,7 +1,7 @@
-"""C code of event functions, whose zeros are located: values with bounds of their rounding errors, and enclosures.
+"""C code of event functions (functions whose zeros are sought): values, bounds of their errors, and enclosures.
 
-If a value is smaller than its bound, its sign is unknown. Enclosures (real intervals and complex discs) contain all
-values of the formula over an interval of time, and so prove where there is no zero.
+If the absolute value of a function is smaller than the error bound, its sign is unknown. Enclosures (real intervals and
+complex discs) contain all values of the formula over an interval of time, and so prove where there is no zero.
 
 The code is placed between :file:`event_enclosures.h` and :file:`events.c`.
 """
@@ -148,8 +148,9 @@ def _switch(
 def _span(tape: Tape, states: Sequence[str], edges: Sequence[int]) -> tuple[int, int]:
     """Return (first, stop): the states on which an event function depends have indices from first to stop - 1.
 
-    ``tape`` lists the operations of the function. The range is extended to whole blocks of states that share one error:
-    block j has the states ``edges[j]`` to ``edges[j + 1] - 1``. Without any state, the result is (0, 0).
+    ``tape`` lists the operations of the function. The range is extended to whole blocks of states, such as the
+    components of omega, which share one bound of their errors. Block j has the states ``edges[j]`` to
+    ``edges[j + 1] - 1``. Without any state, the result is (0, 0).
     """
     used = {op.value for op in tape.operations if op.kind == "symbol"}
     places = [i for i, name in enumerate(states) if name in used]
@@ -169,8 +170,8 @@ def _largest(terms: Sequence[str]) -> str:
 def _statements(index: int, op: Operation, places: dict[str, str], known: dict[str, str]) -> tuple[str, str]:
     """Return two C definitions for operation ``op``, which has the number ``index`` in its formula.
 
-    For number 3, they define its value v3 and the bound e3 of the error of v3. ``places`` maps an input to C, such as
-    ``y[2]``, and ``known`` a state to the C text of its error.
+    For number 3, they define its value v3 and the bound e3 of the error of v3. ``places`` maps each input to its C
+    text, such as ``y[2]``. ``known`` maps each state to the C text of a bound of its error.
     """
     v, e = f"v{index}", f"e{index}"  # errors to first order
     values, errors = [f"v{i}" for i in op.operands], [f"e{i}" for i in op.operands]
@@ -203,7 +204,8 @@ def _enclosed(kind: str, around: str, op: Operation, places: dict[str, str], kno
     """Return the C expression that encloses the result of an operation: a call of a function in event_enclosures.h.
 
     ``kind`` is the kind of enclosure, a key of ``ENCLOSURES``, and ``around`` the C function that makes an enclosure
-    from a centre and a radius. ``places`` maps an input to C, and ``known`` a state to the C text of its error.
+    from a centre and a radius. ``places`` maps each input to its C text, such as ``y[2]``. ``known`` maps each state to
+    the C text of a bound of its error.
     """
     if op.kind == "number":
         return f"symrot_{kind}_point({c_expression(('number', op.value))})"

@@ -84,7 +84,10 @@ def _in_pairs(op: Operation, places: dict[str, str]) -> str:
 
 
 def _gradient(tape: Tape, output: int, states: Sequence[str]) -> list[str]:
-    """Return the C statements that compute the derivatives of one output by all states, by reverse differentiation."""
+    """Return the C statements that compute the gradient of one output with respect to the states.
+
+    The method is reverse-mode differentiation.
+    """
     needed = tape.of(output)
     varying = _varying(tape, needed, set(states))
     terms: dict[int, list[str]] = {tape.outputs[output]: ["1.0"]}
@@ -112,10 +115,12 @@ def _varying(tape: Tape, needed: Sequence[int], states: set[str]) -> set[int]:
 
 
 def _shares(op: Operation, index: int, slope: str) -> list[str]:
-    """Return the C terms that an operation adds to the derivatives of a conserved quantity by its operands.
+    """Return the C terms that an operation contributes to derivatives of a conserved quantity, one for each operand.
 
-    For ``v3 = v1*v2``, with ``index`` 3, the derivatives by v1 and v2 get the terms ``g*v2.hi`` and ``g*v1.hi``, if g
-    (``slope``) is the derivative by v3: reverse-mode differentiation.
+    The derivatives are those with respect to the operands of the operation, in reverse-mode differentiation.
+
+    Example: ``v3 = v1*v2``, with ``index`` 3. If g (``slope``) is the derivative of the quantity with respect to v3,
+    the terms ``g*v2.hi`` and ``g*v1.hi`` belong to its derivatives with respect to v1 and v2.
     """
     values = [f"v{i}.hi" for i in op.operands]
     if op.kind == "+":

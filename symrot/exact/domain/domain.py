@@ -15,13 +15,12 @@ __all__ = ["divisors", "free_angles", "is_dense", "radicands", "signs", "split_r
 def divisors(ring: FormulaRing, granted: Container[int] = ()) -> list[tuple[Expr, Expr]]:
     """Return pairs (divisor as the formula writes it, a factor of the divisor) for all divisors in a ring's formulas.
 
-    The formulas are defined only where no factor is zero. Factors with an index in ``granted`` are omitted, and
-    factors that SymPy knows not to be zero.
+    The formulas are defined only where no factor is zero. Factors that SymPy knows not to be zero are omitted. The
+    caller may omit others that cannot be zero: ``granted`` has their indices in ``ring.ratios.factors``.
     """
     roots = {place: root for root, place in ring.roots.items()}
     pairs: list[tuple[Expr, Expr]] = []
     for number, (source, factor) in enumerate(zip(ring.ratios.sources, ring.ratios.factors, strict=True)):
-        # granted: the caller knows that these factors are not zero
         if number in granted:
             continue
         places = [n for n, power in enumerate(factor.leading_expv()) if power] if len(factor) == 1 else []

@@ -1,4 +1,4 @@
-"""A budget for one decision whether an equation is true: how many polynomial rings may be built.
+"""A budget for one decision on whether an equation is true: the number of polynomial rings that may be built.
 
 Nested roots and inverse functions need many rings. Results are stored only until the decision ends, so the count,
 and with it the verdict, is the same on every machine and for any order of decisions.

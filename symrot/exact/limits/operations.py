@@ -1,6 +1,9 @@
-"""The budget of operations for one claim: for its decision, for other ways to read its text, and for its repairs.
+"""The budget of operations for checking one claim, an equation or relation that a document states.
 
-The count depends on the formulas alone, so that a claim gets the same verdict on every machine.
+The decision of whether the claim is true counts, and so do other readings of an ambiguous text and the search for
+repairs, formulas that correct a false claim.
+
+The count depends on the formulas alone, so a claim gets the same verdict on every machine.
 """
 
 from collections.abc import Iterator
@@ -28,7 +31,8 @@ _left: ContextVar[list[int] | None] = ContextVar("operations left for the claim"
 def one_claim(most: int) -> Iterator[None]:
     """Return a context for one claim, in which at most ``most`` operations are allowed.
 
-    A context inside another one, such as for a repair of the claim, shares the budget of the outer one.
+    A context inside another one shares the budget of the outer one. For example, the context for a repair, a formula
+    that may correct a false claim, lies inside the context for this claim.
     """
     if _left.get() is not None:
         yield

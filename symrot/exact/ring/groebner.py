@@ -14,7 +14,7 @@ from symrot.exact.ring.ratio import TooLarge
 __all__ = ["MOST_PRODUCTS", "groebner_basis"]
 
 MOST_PRODUCTS = 400_000
-"""Largest number of products of two terms to compute one Groebner basis, which take about a second."""
+"""Largest number of products of two terms to compute one Groebner basis; so many products take about a second."""
 
 Monomial = tuple[int, ...]
 Terms = dict[Monomial, Any]

@@ -60,7 +60,11 @@ def product_of(
     content: Rational, above: PolyElement, below: PolyElement, generators: Sequence[Expr],
     roots: Mapping[int, tuple[int, PolyElement]],
 ) -> Product:  # fmt: skip
-    """Return the fraction ``content * above / below``, the argument of a logarithm, in irreducible factors."""
+    """Return the fraction ``content * above / below``, the argument of a logarithm, in irreducible factors.
+
+    ``generators`` are the formulas that the variables of the two polynomials stand for. ``roots`` maps the index of
+    each variable that stands for a root g to a pair (n, P) with ``g^n = P``.
+    """
     sign, exponent = 1, Integer(0)
     numbers = [(content, Rational(1))]
     powers: dict[Expr, Rational] = {}
@@ -79,7 +83,6 @@ def product_of(
             place = factor.leading_expv().index(1) if factor.is_generator else -1
             formula = factor.as_expr(*generators)
             if place in roots:
-                # roots maps the variable of a root g to (n, P) with g^n = P
                 index, inside = roots[place]
                 sign = 0
                 stack.append((inside, times * n / index))

@@ -252,11 +252,13 @@ class FormulaRing:
         return dependences({root: self._polynomial(root) for root in places}, self.generators)
 
     def _take_constant_angles(self) -> int:
-        """Return N, and delete the atom pi from ``bases``, if the ring needs a variable for 2 cos(pi/N); else return 0.
+        """Return N, and delete pi from ``bases``, if the ring needs a variable for 2 cos(pi/N); else return 0.
 
         The ring needs it if constant angles, such as 3 pi/7, are no multiples of pi/24. The sines and cosines of these
         angles are then polynomials in 2 cos(pi/N), where N is the smallest even multiple of their denominators: 14 for
-        3 pi/7. If N is too large, the result is 0, and pi stays an atom whose base angle has its own sine and cosine.
+        3 pi/7. If N is too large, the result is 0, and pi stays in ``bases``, the map from each quantity in the angles,
+        such as theta or pi, to the coefficient of its base angle, such as theta/6 or pi/1009. Sine and cosine of a base
+        angle are two variables of the ring.
         """
         # multiples of pi/24 have square roots as sines and cosines
         if pi not in self.bases or not cyclotomic.has_affordable_degree(self.bases[pi].denominator):

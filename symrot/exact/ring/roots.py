@@ -83,11 +83,12 @@ class Radicand:
 
 @dataclass(frozen=True)
 class Radical:
-    """A fractional power in factors: ``(rational * product(roots) * product(f^n) / below)^power``.
+    """A fractional power, split into factors: ``(rational * product(roots) * product(f^n) / below)^power``.
 
     The pairs (f, n) are in ``outside``. ``sqrt(4 x^2 y)^3 = (2 sqrt(y) |x|)^3`` has rational 2, root sqrt(y), the pair
-    (``|x|``, 1), below 1 and power 3. In a square root, divisors are among the pairs, with n < 0, and ``below`` is 1.
-    In any other root, of index k and radicand P/Q, ``below`` is Q, and the root is that of ``P Q^(k-1)``.
+    (``|x|``, 1), below 1 and power 3. ``below`` is a divisor that is written outside the root: a root of index k > 2
+    with the radicand P/Q becomes the root of ``P Q^(k-1)``, divided by Q. For a square root, ``below`` is 1: its
+    divisors are among the pairs (f, n), with n < 0.
     """
 
     base: Expr

@@ -28,7 +28,7 @@ FUNCTIONS = {
 CLOSING = {"(": ")", "[": "]"}
 ENDS = {"", "+", "-", "\\times", "\\cdot", ",", "=", "&", "\\\\", ")", "]"}
 TIME = "time"
-"""Key, in the table of names, of the letter for time, if that letter is not t."""
+"""Key of the table of names under which a page declares its letter for time, a str, if that letter is not t."""
 UNMARKED = str.maketrans("", "", "{} \t\n\r\f\v")
 
 

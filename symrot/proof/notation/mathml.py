@@ -86,8 +86,8 @@ CLOSE = ("(", ")", "]", ",", ";", "=", "<", ">", "&", "\\left", "\\right", "\\\\
 TALL = ("<mfrac", "<mtable", "<msqrt", "<mroot", "<munder", "∑", "∏", "∫", 'stretchy="true"')
 
 
-class _Translation:
-    """The translation of parsed LaTeX into items: parts of a formula, each with its MathML and width."""
+class _Translator:
+    """Translates one parsed LaTeX text into items: parts of a formula, each with its MathML and width."""
 
     def __init__(self, latex: str) -> None:
         self.latex = latex
@@ -222,9 +222,9 @@ class _Translation:
         return Item(f"<mrow>{first}<mtable>{body}</mtable>{last}</mrow>", sum(widths) + len(lines[0]) + 0.5)
 
 
-ITEMS: dict[type, Callable[[_Translation, Any], Item]] = {
-    Row: _Translation.group, Accent: _Translation.accent, Font: _Translation.font, Fraction: _Translation.fraction,
-    Root: _Translation.root, Delimited: _Translation.delimited, Table: _Translation.table,
+ITEMS: dict[type, Callable[[_Translator, Any], Item]] = {
+    Row: _Translator.group, Accent: _Translator.accent, Font: _Translator.font, Fraction: _Translator.fraction,
+    Root: _Translator.root, Delimited: _Translator.delimited, Table: _Translator.table,
 }  # fmt: skip
 
 
@@ -265,7 +265,7 @@ def read(latex: str) -> list[Item]:
     InputError
         For unsupported LaTeX.
     """
-    return _Translation(latex).row(reader.read(latex, "formula"))
+    return _Translator(latex).row(reader.read(latex, "formula"))
 
 
 def rows(latex: str, width: float) -> list[list[Item]]:

@@ -1,4 +1,4 @@
-"""Printer of formulas as LaTeX, in the way a person writes them."""
+"""Printer of formulas as LaTeX with the conventions of textbooks."""
 
 from typing import Any
 
@@ -16,7 +16,7 @@ ROMAN = ("sn", "cn", "dn")
 
 
 class PagePrinter(LatexPrinter):  # type: ignore[misc]
-    """SymPy's LaTeX printer with a person's conventions: a dot for a rate, no parentheses around a simple angle."""
+    """SymPy's LaTeX printer with conventions of textbooks: a dot for a rate, no parentheses around a simple angle."""
 
     def _print_Symbol(self, symbol: Symbol, style: str = "plain") -> str:
         name = symbol.name

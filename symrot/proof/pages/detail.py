@@ -146,12 +146,13 @@ def _chain(chain: Chain) -> list[Passage]:
 
 
 def _subtracted_multiples(link: Link) -> tuple[tuple[str, str], ...]:
-    """Return the multiples of hypotheses that a step of a rewriting subtracts, as equations (multiple, "0").
+    """Return the products q*b that one step of a rewriting subtracts, each as an equation (LaTeX of q*b, "0").
 
-    ``link`` is the expression after the step. The result is empty if the multiples are short, or if there are none.
+    b is an expression that is zero by the hypotheses of the proof, and q is a factor. ``link`` is the expression after
+    the step, with the pairs (q, b). The result is empty if the products are short enough to stand in the sentence about
+    the step, or if nothing is subtracted.
     """
     terms = _terms(link)
-    # a hypothesis is an expression that is zero; short multiples are in the sentence about the rewriting
     return () if _short(terms) else tuple((term, "0") for term in terms)
 
 

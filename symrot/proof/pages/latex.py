@@ -16,7 +16,7 @@ WIDTH = 62  # letters per line of a displayed formula
 LONGEST_INLINE = 120  # letters of LaTeX; a longer formula in a sentence is displayed on a line of its own
 
 SHARE_OF_WIDE = 0.75
-"""The part of the line width that all columns with long formulas of a table have together."""
+"""The fraction of the line width that the columns with long formulas of a table share equally."""
 
 PACKAGES = r"""\usepackage[T1]{fontenc}
 \usepackage[utf8]{inputenc}

@@ -1,10 +1,10 @@
 """Proven upper limits of the step length, so that no step misses a short pulse of a torque formula.
 
-An enclosure bounds the change of each rate (time derivative of a state) while the time and the states vary in complex
-discs. The same bound limits the Taylor coefficients that a step omits. The disc of the time has the radius *reach*
-times the length of the step. The error of a state in the step is at most the product of three numbers: the bound of its
-rate, the length of the step, and the *missed share*, a small number that follows from the reach and the order of the
-method.
+The time and the states vary in discs of the complex plane. There an enclosure bounds by D the change of each rate, the
+time derivative of a state. By Cauchy's estimate, D also bounds the Taylor coefficients that the polynomial of a step
+omits. The disc of the time has the radius r*h: h is the length of the step, and r is the *reach*. For polynomials of
+order N, the error of the state in the step is then at most ``D*h*missed``, with the *missed share*
+``missed = r**-N/((N + 1)*(1 - 1/r))``.
 """
 
 import math
@@ -36,22 +36,22 @@ HALF_ULP = 2.0**-53  # relative error of one rounded operation
 
 
 class Disc(NamedTuple):
-    """Disc of complex numbers within ``radius`` of a real ``centre``; it encloses the values of a formula.
+    """Disc of all complex numbers within ``radius`` of a real ``centre``; it contains the values of a formula.
 
-    ``log_size``, if present, bounds the logarithm of every absolute value in the disc.
+    ``log_size`` is an upper bound of the logarithms of the absolute values of the formula; None stands for the
+    logarithm of ``abs(centre) + radius``. It is needed where these numbers overflow or underflow.
     """
 
     centre: float
     radius: float
-    # useful where the numbers themselves overflow or underflow
     log_size: float | None = None
 
 
-Parts = tuple[float, float, float | None]
-"""A disc as a plain tuple (centre, radius, log_size), which takes a tenth of the time of a :class:`Disc` to make."""
+DiscTuple = tuple[float, float, float | None]
+"""The fields (centre, radius, log_size) of a :class:`Disc` as a plain tuple, which Python creates ten times as fast."""
 
 
-def _product(a: Parts, b: Parts) -> Parts:
+def _product(a: DiscTuple, b: DiscTuple) -> DiscTuple:
     (x, u, log_x), (y, v, log_y) = a, b
     centre, radius = x * y, _or_infinite(abs(x) * v + abs(y) * u + u * v)
     if log_x is None and log_y is None:
@@ -81,7 +81,7 @@ def _sinh_of(x: float) -> float:
     return math.sinh(x) if abs(x) < LARGEST_EXPONENT else math.copysign(math.inf, x)
 
 
-def _inverse(a: Parts) -> Parts:
+def _inverse(a: DiscTuple) -> DiscTuple:
     centre, radius, _ = a
     size = abs(centre)
     if not size > radius:
@@ -90,18 +90,18 @@ def _inverse(a: Parts) -> Parts:
     return centre * inner * outer, radius * inner * outer, None
 
 
-def _sqrt(a: Disc, whole: float) -> Disc:
+def _sqrt(a: Disc, root_factor: float) -> Disc:
     """Return a disc that contains the square roots of all numbers in the disc ``a``.
 
-    A root near zero has no Taylor series, so that the polynomial of a step may miss its whole change. The caller
-    multiplies all bounds by the missed share, the part of a change that the polynomial misses at most. ``whole`` is 1
-    divided by the missed share. Unless all numbers in ``a`` have a positive real part, the radius is multiplied by
-    ``whole``: the two factors cancel, and the bound of the root's change counts in full.
+    If the disc ``a`` contains zero, the root has no Taylor series there, and the polynomial of a step may miss the
+    whole change of the root, not only the missed share. The radius is then multiplied by ``root_factor``, which is 1
+    divided by the missed share. The caller multiplies every radius by the missed share, so that the change of the root
+    counts in full.
     """
     root = math.sqrt(max(a.centre, 0.0))
     if a.centre > a.radius:
         return Disc(root, a.radius / (root + math.sqrt(a.centre - a.radius)))
-    return Disc(root, whole * (root + math.sqrt(abs(a.centre) + a.radius)))
+    return Disc(root, root_factor * (root + math.sqrt(abs(a.centre) + a.radius)))
 
 
 def _exp(a: Disc) -> Disc:
@@ -209,19 +209,21 @@ class Deviations:
         self._terms = [[(abs(float_value(w, parameters)), operand) for w, operand in own] for own in enclosure.terms]
 
     def __call__(
-        self, t: float, radius: float, whole: float, y: Sequence[float], radii: Sequence[float]
+        self, t: float, radius: float, root_factor: float, y: Sequence[float], radii: Sequence[float]
     ) -> list[float]:
         """Return, for each rate, a bound of its change while time and states vary around ``t`` and ``y``.
 
-        Time varies in a complex disc with the radius ``radius``, s, and state k in a disc with the radius ``radii[k]``.
-        The caller multiplies all bounds by the missed share, the part of a change that the polynomial of a step misses
-        at most. ``whole`` is 1 divided by the missed share: the bound of a square root near zero is multiplied by it,
-        so that the two factors cancel. The polynomial may miss the whole change of such a root, because the root has no
-        Taylor series at zero. A bound is infinite if a pole may lie in the discs.
+        The time varies in a disc of the complex plane around ``t`` with the radius ``radius``, s; state k varies in a
+        disc around ``y[k]`` with the radius ``radii[k]``. A bound is infinite if a pole may lie in the discs.
+
+        The caller multiplies the bounds by the missed share, the largest share of a change that the polynomial of a
+        step can miss. At zero a square root has no Taylor series, and the polynomial may miss its whole change.
+        ``root_factor`` is therefore 1 divided by the missed share: the bound of such a root is multiplied by
+        ``root_factor`` here, and the two factors cancel.
         """
         self.spent += 1
         try:
-            discs = self._discs(t, radius, whole, y, radii)
+            discs = self._discs(t, radius, root_factor, y, radii)
             bounds = [sum(weight * discs[operand][1] for weight, operand in own) for own in self._terms]
         except (OverflowError, ValueError, ZeroDivisionError):
             return [math.inf if own else 0.0 for own in self._terms]
@@ -236,14 +238,16 @@ class Deviations:
         return [] if self._rounding is None else self._rounding(t, 0.0, 1.0, y, [0.0] * len(y))
 
     def _discs(
-        self, t: float, radius: float, whole: float, y: Sequence[float], radii: Sequence[float]
-    ) -> dict[int, Parts]:
-        """Return discs that contain the values of the intermediate results of the rates while time and states vary.
+        self, t: float, radius: float, root_factor: float, y: Sequence[float], radii: Sequence[float]
+    ) -> dict[int, DiscTuple]:
+        """Return discs of the complex plane, each of which contains all values of one intermediate result of the rates.
 
-        The arguments are those of :meth:`__call__`. The key of a disc is the index of its intermediate result in
-        ``enclosure.system.series``, where ``enclosure`` is the argument of the constructor.
+        The time varies in a disc around ``t`` with the radius ``radius``, s, and state k in a disc around ``y[k]`` with
+        the radius ``radii[k]``. The radius for a square root of numbers near zero is multiplied by ``root_factor``, see
+        :meth:`__call__`. The key of a disc is the index of its intermediate result in ``enclosure.system.series``,
+        where ``enclosure`` is the argument of the constructor.
         """
-        discs: dict[int, Parts] = {}
+        discs: dict[int, DiscTuple] = {}
         for i, series, operands, weights in self._rules:
             rule = series.rule
             if rule == "state":
@@ -267,15 +271,22 @@ class Deviations:
                 if rule == "clock":  # a function of rate*t + offset
                     rate, offset = weights
                     own = [Disc(rate * t + offset, abs(rate) * radius)]
-                further = (whole,) if series.function == "sqrt" else ()
+                further = (root_factor,) if series.function == "sqrt" else ()
                 discs[i] = FUNCTIONS[series.function](*own, *further)
             if i in self._linear:
                 discs[i] = self._rounded(series, self._linear[i], discs[i], [discs[k][0] for k in operands], weights)
         return discs
 
     @staticmethod
-    def _rounded(series: Series, linear: bool, disc: Parts, operands: list[float], weights: list[float]) -> Parts:
-        """Return a disc around the computed value of a function of the time, large enough for its rounding errors."""
+    def _rounded(
+        series: Series, linear: bool, disc: DiscTuple, operands: list[float], weights: list[float]
+    ) -> DiscTuple:
+        """Return a disc around the computed value of a function of the time; it also contains the exact value.
+
+        The function is ``series``; ``linear`` says whether it is the time or a phase ``a*t + b``. ``disc`` is its disc
+        without the rounding error of its last operation. ``operands`` are the computed values of its operands. For a
+        sum, ``weights`` has their factors and then the constant term.
+        """
         centre, radius, log_size = disc
         if linear:  # the time itself, or a phase: its operands have no other errors that count
             return centre, HALF_ULP * abs(centre), None
@@ -295,11 +306,12 @@ def longest_followed(
     edges: Sequence[int],
     order: int,
 ) -> float:
-    """Return the length of a step, at most h, for which the error from a missed change of the torque is proven small.
+    """Return the length of a step, at most h, in which a missed change of the torque causes at most the allowed error.
 
-    The error is small if it is at most ``allowed``. The result has the sign of h. It is h if the proof succeeds for h,
-    otherwise usually close to the longest length for which it succeeds. A result of at most 1e-300 s in absolute value
-    means that nothing was proven.
+    The stepper evaluates the torque at some points of the step only, and a short pulse of the torque may lie between
+    them. For the returned length, the error from such a pulse is proven to be at most ``allowed``. The result has the
+    sign of h. It is h if the proof succeeds for h, otherwise usually close to the longest length for which it succeeds.
+    A result of at most 1e-300 s in absolute value means that nothing was proven.
 
     Parameters
     ----------
@@ -312,7 +324,8 @@ def longest_followed(
     path : N sequences
         For each state, the absolute values of the coefficients 1, 2, .. of its polynomial in (time - t)/h.
     allowed : one number per block
-        Largest error from missed changes of the torque, for each block of states (omega, attitude).
+        Largest error that a change of the torque between the evaluated points may cause, for each block of states
+        (omega, attitude).
     edges : sequence of int
         Edges of the blocks: block k consists of the states from edge k up to edge k + 1.
     order : int

@@ -1,6 +1,6 @@
 """Results of a motion with events: times of the events, states at these times, and samples up to a terminal event.
 
-A *side* of a motion is the interval before or after its start.
+A *side* of a motion is the part of it after its initial time, or the part before.
 """
 
 from collections.abc import Callable, Generator, Iterator, Sequence
@@ -73,7 +73,7 @@ class EventResult(NamedTuple):
 
 
 class _Side(NamedTuple):
-    """The motion toward later or toward earlier times than its start, for the search for events."""
+    """The part of a motion after its initial time, or the part before, as the search for events needs it."""
 
     # polynomials of the states
     pieces: Generator[Piece, None, None]
@@ -122,34 +122,36 @@ def integrate_with_events(motion: Motion, times: Floats, events: Sequence[Event]
     doubts, errors = list[tuple[int, float]](), list[PropagationError]()
     flat, rounded = list[tuple[int, float, float]](), list[float]()
     accuracy = EXACT_ERROR if isinstance(motion, ClosedFormMotion) else TOLERANCES * motion.tolerance
-    for part in split_at(times, motion.start):
-        end = float(times[part[-1]])
-        try:
-            side = _side(motion, end)
-        except IntegrationStopped as early:
-            raise (early.later(zero) if zero else early) from None
-        result, early_end = _searched(path, events, p, side, motion.start, end, accuracy)
-        listed, stop = result.zeros, result.stop
-        ended |= stop is not None
-        reached = abs((end if stop is None else stop) - motion.start)
-        if early_end is not None:
-            errors.append(early_end.later(zero) if zero else early_end)
-            reached = abs(early_end.t - motion.start)
-        inside = part[np.abs(times[part] - motion.start) <= reached]
-        known[inside] = True
-        states[inside] = side.states(times[inside])
-        rows = side.states(np.array([each.t for each in listed]))
-        if stop is not None and times[inside[-1:]].tolist() != [stop]:
-            last = part[len(inside)]  # the sample at the event replaces the first sample beyond it
-            known[last], sample_times[last], states[last] = True, stop + zero, rows[-1]
-        zeros = _joined(zeros, list(zip(listed, rows, strict=True)), motion.start)
-        doubts += [(event, t + zero) for event, t in result.doubts]
-        flat += [(event, first + zero, last + zero) for event, first, last in result.flat]
-        side.pieces.close()
-        stats = side.stats()
-        counts += stats[:3]
-        switchings += [each for each in stats.switchings if abs(each.t - motion.start) <= reached]
-        rounded += [t for t in stats.later(zero).rounded_beyond if abs(t - zero - motion.start) <= reached]
+    with motion.following(times):
+        for part in split_at(times, motion.start):
+            end = float(times[part[-1]])
+            try:
+                side = _side(motion, end)
+            except IntegrationStopped as early:
+                raise (early.later(zero) if zero else early) from None
+            result, early_end = _searched(path, events, p, side, motion.start, end, accuracy)
+            listed, stop = result.zeros, result.stop
+            ended |= stop is not None
+            reached = abs((end if stop is None else stop) - motion.start)
+            if early_end is not None:
+                motion.raise_torque_error()
+                errors.append(early_end.later(zero) if zero else early_end)
+                reached = abs(early_end.t - motion.start)
+            inside = part[np.abs(times[part] - motion.start) <= reached]
+            known[inside] = True
+            states[inside] = side.states(times[inside])
+            rows = side.states(np.array([each.t for each in listed]))
+            if stop is not None and times[inside[-1:]].tolist() != [stop]:
+                last = part[len(inside)]  # the sample at the event replaces the first sample beyond it
+                known[last], sample_times[last], states[last] = True, stop + zero, rows[-1]
+            zeros = _joined(zeros, list(zip(listed, rows, strict=True)), motion.start)
+            doubts += [(event, t + zero) for event, t in result.doubts]
+            flat += [(event, first + zero, last + zero) for event, first, last in result.flat]
+            side.pieces.close()
+            stats = side.stats()
+            counts += stats[:3]
+            switchings += [each for each in stats.switchings if abs(each.t - motion.start) <= reached]
+            rounded += [t for t in stats.later(zero).rounded_beyond if abs(t - zero - motion.start) <= reached]
     zeros.sort(key=lambda each: each[0].t)
     own = [[each for each in zeros if each[0].event == number] for number in range(len(events))]
     return EventResult(
@@ -169,7 +171,12 @@ def integrate_with_events(motion: Motion, times: Floats, events: Sequence[Event]
 def _searched(
     path: Path, events: Sequence[Event], p: Sequence[float], side: "_Side", start: float, end: float, accuracy: float
 ) -> tuple[SearchResult, IntegrationStopped | ZerosNotSeparated | None]:
-    """Return the events after or before a motion's start, and the error that ended the search early or None."""
+    """Return the events on one side of a motion's initial time, and the error that ended the search early or None.
+
+    The side is the part of the motion from the initial time ``start`` to the time ``end``, s, which may be later or
+    earlier. ``path`` is the compiled library of the search, ``p`` are the values of its parameters. ``accuracy`` is the
+    error of the states, relative to their sizes.
+    """
     if end == start:
         return SearchResult([], None, []), None
 
@@ -233,8 +240,10 @@ def _joined(
 
 
 def _side(motion: Motion, end: float) -> _Side:
-    """Return the motion from its start to ``end``, s, as polynomials and as a function of times."""
-    # end may lie before the start
+    """Return the part of a motion from its initial time to ``end``, s, as polynomials and as a function of times.
+
+    The time ``end`` may be earlier than the initial time.
+    """
     plan = motion.plan
     start, y0 = motion.start, np.array(plan.initial_state, dtype=np.float64)
     broken: list[PropagationError] = []

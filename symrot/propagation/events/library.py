@@ -20,7 +20,13 @@ __all__ = ["SearchLibrary", "event_library_source", "guard_library_source", "sea
 def event_library_source(
     quantities: Program, events: Sequence[Event], states: Sequence[str], edges: Sequence[int], scales: Sequence[float]
 ) -> str:
-    """Return the C source of a library that locates the events of a motion with the given states."""
+    """Return the C source of a library that locates the events of a motion.
+
+    The library computes omega and the quaternion from the states by the program ``quantities``. ``states`` has the
+    names of the states. ``edges`` and ``scales`` describe blocks of states (omega, attitude): block k consists of the
+    states from ``edges[k]`` up to ``edges[k + 1]``, and the errors of these states are relative to ``scales[k]`` or, if
+    it is 0, to the largest of them.
+    """
     # its functions take the parameters of quantities, the kernel that computes omega and q from the states
     return _library_source(quantities, [_with_pi(event.node) for event in events], states, edges, scales, False)
 
@@ -30,7 +36,9 @@ def guard_library_source(
 ) -> str:
     """Return the C source of a library that locates where formulas change their signs along a motion.
 
-    A change of sign at a pole or jump counts too: a function such as sign then changes its value.
+    A change of sign at a pole or jump of a formula counts too: a function such as sign, which has the formula as its
+    argument, changes its value there. The arguments ``quantities``, ``states``, ``edges`` and ``scales`` are those of
+    :func:`event_library_source`.
     """
     return _library_source(quantities, formulas, states, edges, scales, True)
 

@@ -124,7 +124,7 @@ def fitted(
     states: Callable[[Floats], Floats], edges: Floats, blocks: Sequence[int], scales: Sequence[float], depth: int = 0,
     left: list[int] | None = None, accuracy: float | Floats = 0.0,
 ) -> Piece:  # fmt: skip
-    """Return polynomials that follow a motion between the successive times ``edges``; more edges are added if needed.
+    """Return polynomials that approximate a motion between successive times ``edges``; more edges are added if needed.
 
     They agree with the motion usually up to rounding errors, and at least to 1e-9 of the states plus ``accuracy``,
     except on an interval that cannot be halved further because its ends are adjacent doubles.
@@ -220,10 +220,11 @@ def fitted_pieces(
     blocks: Sequence[int],
     scales: Sequence[float],
 ) -> Generator[Piece, None, None]:
-    """Yield polynomials that follow a motion from ``start`` to ``end``, s, as closely as those of :func:`fitted`.
+    """Yield polynomials that approximate a motion from ``start`` to ``end``, s, as closely as those of :func:`fitted`.
 
-    ``longest``, s, is a first guess of the time that one polynomial fits; ``blocks`` and ``scales`` are as for
-    :func:`fitted`.
+    ``states`` is the motion: a function that takes n times, s, and returns the states, shape (n, N). ``longest``, s, is
+    a first guess of the length of the interval in which one polynomial is accurate. The arguments ``blocks`` and
+    ``scales`` are those of :func:`fitted`.
     """
     side, t, most, count = math.copysign(1.0, end - start), start, 8.0 * longest, FEWEST
     while t != end:

@@ -33,7 +33,11 @@ STATE_ERROR = 4 * float(np.finfo(float).eps)  # relative rounding error of a sta
 
 
 class ZerosNotSeparated(PropagationError):
-    """Raised if the zeros of ``formulas`` after the time ``t``, s, are not separated within the allowed operations."""
+    """Raised if the search cannot separate neighbouring zeros within its limits of operations and intervals.
+
+    The search ends at the time ``t``, s: the zeros of ``formulas`` before t, in the order of the motion, are known and
+    stored as ``zeros``; those beyond t are not. ``effort`` says how many operations and intervals the search has used.
+    """
 
     def __init__(self, t: float, formulas: Sequence[str], effort: str) -> None:
         named = ", ".join(map(repr, formulas))
@@ -42,7 +46,6 @@ class ZerosNotSeparated(PropagationError):
             f"not separated after {effort}"
         )
         self.t, self.formulas, self.effort = t, formulas, effort
-        # those before t
         self.zeros: list[EventZero] = []
 
     def later(self, epoch: float) -> "ZerosNotSeparated":
@@ -255,6 +258,9 @@ def signs_at_ends(
     path: Path | str, formulas: Sequence[str], p: Sequence[float], piece: Piece
 ) -> tuple[list[int], list[int]]:
     """Return two lists: the signs of formulas just after the start of ``piece``, a part of a motion, and at its end.
+
+    ``path`` is the compiled library with the search for zeros of these formulas, ``p`` are the values of the parameters
+    that the library expects.
 
     A sign is 0 if the value is smaller than its rounding errors.
     """

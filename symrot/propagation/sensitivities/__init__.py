@@ -1,1 +1,1 @@
-"""Derivatives of a motion by its initial values and by the constants of its scene."""
+"""Derivatives of a motion with respect to its initial values and the constants of its scene."""

@@ -39,7 +39,7 @@ def places_within(begin: float, times: Floats) -> Floats:
 def rests_at_corner(
     rates: Program, depends: Sequence[Sequence[str]], p: Sequence[float], times: Floats, samples: Floats
 ) -> bool:
-    """Return whether a motion stays where its rates are not differentiable by the states or parameters.
+    """Return whether a motion stays where its rates have no derivatives with respect to states or parameters.
 
     The rates are examined at n arbitrary times. A motion that only passes a point without derivatives is there at a
     single time, which the arbitrary times miss.
@@ -53,7 +53,7 @@ def rests_at_corner(
     p : sequence of float
         The parameters.
     times, samples : arrays, shapes (n,) and (n, 7 + 7 m)
-        Times, s, with the states and their derivatives by the m variables.
+        Times, s, with the states and their derivatives with respect to the m variables.
     """
     names = [name for argument in rates.signature.arguments if argument.name == "p" for name, *_ in argument.components]
     moving = set().union(*depends)
@@ -77,7 +77,7 @@ def rests_at_corner(
 
 
 class _Number:
-    """A number with its derivatives by states and parameters.
+    """A number with its derivatives with respect to states and parameters.
 
     BENT, STEEP or EDGE stands for a derivative that does not exist. BENT: its difference quotients are bounded, as for
     ``|omega|`` at 0; STEEP: the quotients are not bounded; EDGE: for some nearby states the number has no value.

@@ -1,8 +1,8 @@
 """The jumps of derivatives at the switches of a torque.
 
 A switching function (sign, abs, ..) has a *guard* g(t, x, p), its argument, and a *mode*, the number that replaces it
-in formulas. Where g becomes zero, the rates change from f- to f+, and the derivatives S of the states x by a variable v
-jump. The time of the switch changes by ``dt/dv = -(g_x S- + g_p dp/dv)/(g_t + g_x f-)``, and ::
+in formulas. Where g becomes zero, the rates change from f- to f+, and the derivatives S of the states x with respect to
+a variable v jump. The time of the switch changes by ``dt/dv = -(g_x S- + g_p dp/dv)/(g_t + g_x f-)``, and ::
 
     S+ = S- - (f+ - f-) dt/dv
 
@@ -34,9 +34,11 @@ MOST_AT_ONCE = 6  # functions that may switch at one time
 
 
 class Flip(NamedTuple):
-    """The switch of one function (sign, abs, ..): its new value, and the derivatives of its time by the m variables.
+    """The switch of one function (sign, abs, ..).
 
-    ``guard`` has the derivatives of the function's argument by the seven states.
+    ``value`` is the value of the function after the switch. ``time`` has the derivatives of the time of the switch with
+    respect to the m variables. ``guard`` has the derivatives of the function's argument with respect to the seven
+    states.
     """
 
     value: int
@@ -104,7 +106,9 @@ class Crossings:
                 grazes |= leaving * speed <= 0.0 or not abs(leaving) > STEEP * max(guard.size(later), mean)
             if grazes and mode in jumps:
                 raise guards.refusal(
-                    before.end, f"the argument of {guards.name(mode)} reaches zero at a speed near zero"
+                    before.end,
+                    f"the argument of {guards.name(mode)} changes too slowly where {guards.name(mode)} switches, so "
+                    "that the time of this switch has no derivatives",
                 )
             rows[mode] = np.full(len(by.T), np.nan) if grazes else 0.0 - guard.change(by) / speed
         if not jumps and float(np.abs(later - f).max()) > STEEP * float(np.abs([f, later]).max()):
@@ -132,14 +136,15 @@ class Crossings:
         return by if first is None else np.asarray(by - np.outer(later - f, rows[first]))
 
     def _at_once(self, interval: Interval, flips: dict[str, Flip], alone: bool) -> Floats | None:
-        """Return the change of the states' derivatives by the variables at a switch of several functions, shape (7, m).
+        """Return the change of the derivatives of the states where several functions switch at one time, shape (7, m).
 
-        The functions (sign, ..) switch at the end of ``interval``. Return None if the change can be computed as for one
-        function: if only one function switches, or if the times of all switches have the same derivatives by the
-        variables. The variables are the initial values and constants by which the motion is differentiated.
+        The functions (sign, ..) switch at the end of ``interval``. The derivatives are those with respect to the m
+        variables, the initial values and constants for which the user requests sensitivities. Return None if the
+        formula for the switch of a single function applies: if only one function switches, or if the times of all
+        switches have the same derivatives.
 
-        Raise PropagationError if the states after the switches may depend on the order of the switches. Switches that
-        were earlier by no more than rounding errors are included.
+        Raise PropagationError if the states after the switches may depend on the order of the switches. The order of
+        these functions and of all functions that switched earlier by no more than rounding errors is examined.
 
         Parameters
         ----------
@@ -161,11 +166,16 @@ class Crossings:
         return self._change_in_any_order(interval, flips, alone)
 
     def _change_in_any_order(self, interval: Interval, flips: dict[str, Flip], alone: bool) -> Floats | None:
-        """Return the result of :meth:`_at_once` for functions that switch at the end of ``interval``.
+        """Return the change of the derivatives of the states where several functions switch at one time, shape (7, m).
 
-        The order of the switches must not matter: raise PropagationError unless the switch of each function changes the
-        rates by the same amount whether or not the others have switched, and does not change the time derivatives of
-        the arguments of the others. The arguments are those of :meth:`_at_once`.
+        The functions switch at the end of ``interval``; ``flips`` is a map from the mode of a function (name of the
+        number that replaces the function in formulas) to its switch. Return None if the times of all switches have the
+        same derivatives.
+
+        The order of the switches must not matter. Raise PropagationError unless each switch changes the rates by the
+        same amount whether or not the other functions have switched, and leaves the time derivatives of the arguments
+        of the other functions unchanged. Raise it also if ``alone`` is False: a further function then switches, or the
+        argument of a function is held at zero from then on.
         """
         guards = self.guards
         groups: list[list[str]] = []
@@ -219,10 +229,10 @@ class Crossings:
 
 
 def jumps_at_end(guards: Guards, interval: Interval) -> NDArray[np.bool_]:
-    """Return, for each of m variables, whether the states' derivatives by the variable may jump at the end of a motion.
+    """Return, for each variable, whether the derivatives with respect to it may jump at the end of a motion.
 
-    The derivatives may jump if a function such as sign switches exactly there. ``interval`` is the last smooth interval
-    of the motion; the variables are those of ``guards``.
+    The derivatives are those of the states. They may jump if a function such as sign switches exactly at the end.
+    ``interval`` is the last smooth interval of the motion; the variables are those of ``guards``.
     """
     jumps = np.zeros(len(guards.parameter_slopes.columns), dtype=np.bool_)
     f = guards.rates(interval, interval.stop, interval.last)

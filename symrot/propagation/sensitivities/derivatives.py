@@ -1,4 +1,7 @@
-"""The derivatives of a motion by initial values and constants: at sample times, at events, and as transition matrix."""
+"""Derivatives of a motion with respect to initial values and constants of its scene.
+
+They are computed at sample times, at events, and as transition matrix.
+"""
 
 from collections.abc import Sequence
 from dataclasses import replace
@@ -61,7 +64,7 @@ def variation(scene: Scene, keys: Sequence[str], times: Floats) -> Sensitivities
 
 
 def event_slopes(scene: Scene, keys: Sequence[str], result: EventResult, tolerance: float) -> tuple[Floats, ...]:
-    """Return for each event the derivatives of its k times by the m variables that ``keys`` names, shape (k, m).
+    """Return, for each event, the derivatives of its k times with respect to the m variables ``keys``, shape (k, m).
 
     ``tolerance`` is the error of the motion of ``result``.
     """
@@ -89,7 +92,7 @@ _recent: list[_Equations] = []
 
 
 def _equations(scene: Scene, keys: Sequence[str]) -> _Equations:
-    """Return the equations of a scene's motion and its derivatives by ``keys``; recent ones are used again."""
+    """Return the equations of a scene's motion and its derivatives with respect to ``keys``; recent ones are reused."""
     equations = next((each for each in _recent if each.fit(scene, keys)), None)
     if equations is None:
         kind: type[_Equations] = SwitchedEquations if switched(scene) else SmoothEquations

@@ -1,4 +1,4 @@
-"""Derivatives of the times of events by initial values and constants.
+"""Derivatives of the times of events with respect to initial values and constants.
 
 At an event g(t, x) = 0. If a variable v changes, the state x changes by S dv, and the zero moves by dt with ``(dg/dt)
 dt + (grad g) S dv = 0``; dg/dt is the derivative along the motion.
@@ -32,7 +32,9 @@ def require_smooth_events(events: Sequence[Event]) -> None:
 def event_time_slopes(
     event: Event, kinds: Sequence[str], times: Floats, states: Floats, rates: Floats, slopes: Floats
 ) -> Floats:
-    """Return the derivatives of the times of one event by m variables, s per unit of each variable, shape (k, m).
+    """Return the derivatives of the k times of an event with respect to m variables, shape (k, m).
+
+    Their units are s per unit of the variable.
 
     Parameters
     ----------
@@ -46,7 +48,7 @@ def event_time_slopes(
     states, rates : arrays, shape (k, 7)
         The states omega and quaternion at these times, and their time derivatives.
     slopes : array, shape (k, 7, m)
-        The derivatives of the states by the variables, at fixed time.
+        The derivatives of the states with respect to the variables, at fixed time.
 
     Examples
     --------
@@ -76,7 +78,7 @@ def along_motion(event: Event, time: float, state: Floats, rates: Floats) -> flo
 
 
 def _gradient(event: Event, time: float, state: Floats) -> tuple[float, Floats]:
-    """Return the derivatives of the formula of an event by time and by the seven states."""
+    """Return the derivatives of the formula of an event with respect to time and the seven states."""
     values = {name: Dual(float(x), {name: 1.0}) for name, x in zip(STATES, state, strict=True)}
     values["t"] = Dual(time, {"t": 1.0})
     formula = evaluate(event.node, values, dual_functions(FLOAT_FUNCTIONS), float)

@@ -1,4 +1,4 @@
-"""Guards and rates of a motion under torques that jump or bend, with their derivatives by states and variables.
+"""Guards and rates of a motion under torques that jump or bend, with their derivatives.
 
 A *guard* is the argument of a switching function (sign, abs, ..); its *mode* is the number that replaces the function
 in formulas.
@@ -36,9 +36,9 @@ DUALS = dual_functions(FLOAT_FUNCTIONS)
 
 
 class Gradient(NamedTuple):
-    """The value of a formula and its derivatives: by time, by the 7 states, and by the m variables at fixed states.
+    """The value of a formula, and its partial derivatives with respect to time, the seven states and the m variables.
 
-    The variables are the initial values and constants of the scene by which a motion is differentiated.
+    The variables are the initial values and constants of the scene for which the user requests sensitivities.
     """
 
     value: float
@@ -53,14 +53,17 @@ class Gradient(NamedTuple):
     def size(self, rates: Floats) -> float:
         """Return the sum of the absolute values of the products that :meth:`along` adds, as a scale for its result.
 
-        These are the derivative by time, and for each state the derivative by the state times the rate of the state.
+        The products are the derivative with respect to time and, for each state, the derivative with respect to it
+        times its rate.
         """
         return abs(self.time) + float(np.abs(self.states) @ np.abs(rates))
 
     def change(self, slopes_of_states: Floats) -> Floats:
-        """Return the m derivatives of the formula by the variables at a fixed time, directly and through the states.
+        """Return the m total derivatives of the formula with respect to the variables at a fixed time.
 
-        ``slopes_of_states`` has the derivatives of the states by the variables, shape (7, m).
+        A variable changes the value of the formula directly and through the states.
+
+        ``slopes_of_states`` has the derivatives of the states with respect to the variables, shape (7, m).
         """
         return np.asarray(self.states @ slopes_of_states + self.variables)
 
@@ -75,7 +78,7 @@ class Guards:
     system : SwitchedSystem
         The switching functions.
     parameter_slopes : ParameterSlopes
-        The derivatives of the parameters by the variables.
+        The derivatives of the parameters with respect to the variables.
     side : float
         1.0 for a motion forward in time, -1.0 backward.
     """
@@ -112,9 +115,10 @@ class Guards:
         return self._by_name[mode].label
 
     def is_floor(self, mode: str) -> bool:
-        """Return whether a function is floor or mod; ``mode`` names the number that replaces it in formulas.
+        """Return whether a function is floor(x) or mod(x, y), which is computed from floor(x/y).
 
-        A function floor(x) with the present value n switches where x - n is 0 or 1.
+        ``mode`` is the name of the number that replaces the function in formulas. A function floor(x) whose present
+        value is n switches where x - n is 0 or 1.
         """
         return self._by_name[mode].kind == "floor"
 
@@ -161,7 +165,8 @@ class Guards:
         """Return two dicts for the equations in an interval: the values of ``parameters``, and their derivatives.
 
         The keys are names of parameters. The second dict has only the parameters that depend on a variable, each with
-        its m derivatives by the variables. ``kind`` names the equations: ``"rates"``, ``"guards"`` or ``"quantities"``.
+        its m derivatives with respect to the variables. ``kind`` says to which equations the parameters belong:
+        ``"rates"``, ``"guards"`` or ``"quantities"``.
         """
         timed = any(EPOCH in names(formula) for _, formula in parameters)
         key = kind, id(interval.regime), tuple(interval.modes.values()), interval.zero if timed else None
@@ -174,8 +179,11 @@ class Guards:
         return {name: value for name, (value,) in self._slopes[key].items()}, self._slopes[(*key, "by")]
 
     def _duals(self, parameters: Parameters, interval: Interval, t: float, y: Floats, kind: str) -> dict[str, Any]:
-        """Return the value of each name in a guard's formula, with its derivatives by the time, the states and the
-        variables by which the motion is differentiated, as a map from the name to a dual number.
+        """Return a map from each name in the equations of an interval to its value at the time t and the states y.
+
+        A value that depends on the time, the states or the variables is a dual number: it contains its derivatives with
+        respect to them. ``kind`` says to which equations ``parameters`` belong: ``"rates"``, ``"guards"`` or
+        ``"quantities"``.
         """
         values, rows = self.bound(parameters, interval, kind)
         inputs: dict[str, Any] = {name: float(mode) for name, mode in interval.modes.items()}
@@ -220,7 +228,7 @@ class Guards:
     def rate_slopes(self, interval: Interval, t: float, y: Floats) -> Floats:
         """Return the rates of the seven states with their derivatives, shape (7, 1 + 7 + m): one row for each state.
 
-        A row has the rate, its derivatives by the seven states, and its derivatives by the m variables.
+        A row has the rate, then its derivatives with respect to the seven states and to the m variables.
         """
         program, parameters = self.program(interval)
         inputs = self._duals(parameters, interval, t, y, "rates")

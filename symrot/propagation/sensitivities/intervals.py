@@ -82,14 +82,15 @@ def smooth_intervals(motion: SwitchedMotion, end: float) -> tuple[list[Interval]
         intervals.append(Interval(regime, dict(run.modes), run.held, chunk.zero, start, stop, first, last, [chunk]))
 
     run.follow(add)
-    return _without_returns(motion, intervals, abs(end - motion.start)), run.changes
+    return _without_rounding_intervals(motion, intervals, abs(end - motion.start)), run.changes
 
 
-def _without_returns(motion: SwitchedMotion, intervals: list[Interval], length: float) -> list[Interval]:
-    """Return the intervals without the very short ones that only rounding errors cause, just before a sliding motion.
+def _without_rounding_intervals(motion: SwitchedMotion, intervals: list[Interval], length: float) -> list[Interval]:
+    """Return the smooth intervals without the very short intervals that rounding errors cause before a sliding motion.
 
-    At the start of such an interval, the argument of a switching function (sign, abs, ..) passes zero; from the end of
-    the interval on, the argument is held at zero.
+    At the start of such a short interval, the argument of a switching function (sign, abs, ..) passes zero by a
+    rounding error; at its end the argument returns to zero, where it is held from then on. ``length`` is the length of
+    the whole motion, s, with which the length of an interval is compared.
     """
     result = intervals[:1]
     for current, following in pairwise([*intervals[1:], None]):

@@ -1,4 +1,6 @@
-"""Compiled libraries that integrate a motion together with its derivatives by initial values and constants.
+"""Compiled libraries that integrate a motion together with its derivatives.
+
+The derivatives are those with respect to variables: initial values and constants of a scene.
 
 Taylor series need derivatives of every order. A root such as ``|omega|`` has none where it is zero; there
 Dormand-Prince 8(5,3), whose error control handles corners, takes their place.
@@ -72,7 +74,7 @@ def variation_source(
     source: Callable[..., str],
     rough: bool = False,
 ) -> str:
-    """Return the C source of a library that integrates a motion together with its derivatives by variables.
+    """Return the C source of a library that integrates a motion and its derivatives with respect to variables.
 
     Parameters
     ----------
@@ -116,7 +118,7 @@ def variation_source(
 
 
 class MotionLibrary:
-    """The compiled code that integrates one motion with its derivatives by initial values and constants.
+    """The compiled code that integrates one motion with its derivatives with respect to variables.
 
     The arguments ``plan``, ``rates`` and ``depends`` are those of :func:`variation_source`.
     """
@@ -154,7 +156,7 @@ class MotionLibrary:
         return library.build(text, "motion")
 
     def sample(self, p: Sequence[float], y: Sequence[float], begin: float, times: Floats) -> Floats:
-        """Return the states and their derivatives by m variables at n times, s, shape (n, 7 + 7 m).
+        """Return the states and their derivatives with respect to m variables at n times, s, shape (n, 7 + 7 m).
 
         ``p`` holds the parameters of the rates, then their derivatives; ``y`` the states and derivatives at ``begin``.
 

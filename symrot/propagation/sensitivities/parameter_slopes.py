@@ -1,4 +1,4 @@
-"""The derivatives of the parameters of a motion's equations by variables, such as those of ``weight/A`` by a mass."""
+"""Derivatives of the parameters of a motion's equations, such as that of ``weight/A`` with respect to a mass."""
 
 from collections.abc import Mapping, Sequence
 from copy import copy
@@ -19,11 +19,13 @@ from symrot.scene.scene import Scene
 __all__ = ["ParameterSlopes", "Rows"]
 
 Rows = Mapping[str, list[float]]
-"""Name of a parameter -> its m derivatives, one by each variable (initial value or constant of the scene)."""
+"""Name of a parameter -> its m derivatives with respect to the variables (initial values or constants of the scene)."""
 
 
 class ParameterSlopes:
-    """The derivatives of the parameters of a motion's equations by variables, initial values or constants of the scene.
+    """The derivatives of the parameters of a motion's equations with respect to variables.
+
+    The variables are initial values or constants of the scene.
 
     ``columns`` has one :class:`Column` for each variable: the dependence of the scene on it.
     """
@@ -35,14 +37,14 @@ class ParameterSlopes:
     def with_changes(self, changes: Sequence[Mapping[str, Fraction]]) -> Self:
         """Return a copy with more derivatives of constants.
 
-        ``changes[k]`` is a map from the name of a constant to its derivative by variable number k.
+        ``changes[k]`` is a map from the name of a constant to its derivative with respect to variable number k.
         """
         other = copy(self)
         other._changes = [{**own, **more} for own, more in zip(self._changes, changes, strict=True)]
         return other
 
     def _changes_of(self, column: Column) -> Mapping[str, Fraction]:
-        """Return the derivatives of the constants in the equations by the variable of ``column``.
+        """Return the derivatives of the constants in the equations with respect to the variable of ``column``.
 
         The result is a map from name to derivative, without the constants that do not depend on the variable.
         """
@@ -58,7 +60,7 @@ class ParameterSlopes:
         return [name for name, formula in parameters if names(formula) & self._changes[column].keys()]
 
     def slopes_of(self, parameters: Parameters, constants: Mapping[str, Fraction]) -> Rows:
-        """Return a map from the name of a parameter to its m derivatives by the variables.
+        """Return a map from the name of a parameter to its m derivatives with respect to the variables.
 
         Parameters that depend on none of the variables are left out.
         """

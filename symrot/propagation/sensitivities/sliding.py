@@ -35,10 +35,11 @@ def beside(guards: Guards, interval: Interval, signs: Mapping[str, int]) -> Inte
 def hold_at_rest(guards: Guards, interval: Interval) -> None:
     """Change the equations of an interval so that arguments that stay at zero in the interval are kept at zero.
 
-    The arguments (guards) are those of functions such as sign and abs. If a value of the function keeps its argument at
-    zero, the equations determine this value from then on. Otherwise the function is appended to ``interval.resting``,
-    for :func:`refuse_resting`; it is named by its mode, the number that replaces the function in formulas. An argument
-    is left alone if the rates and their derivatives are the same on both sides of its zero.
+    The arguments (guards) are those of functions such as sign and abs. In the changed equations, the value of the
+    function is the value that keeps its argument at zero. Where the equations do not determine such a value, the name
+    of the function's mode, the number that replaces the function in formulas, is appended to ``interval.resting``
+    instead; :func:`refuse_resting` later raises an error if a change of one of the variables makes the argument leave
+    zero. Nothing changes for an argument if the rates and their derivatives are the same on both sides of its zero.
     """
     resting = [mode for mode in interval.regime.formulas if mode not in interval.held and rests(guards, interval, mode)]
     for mode in resting:
@@ -103,10 +104,13 @@ def _is_smooth_at(guards: Guards, interval: Interval, mode: str) -> bool:
 def require_one_surface(guards: Guards, interval: Interval, mode: str, t: float, y: Floats) -> None:
     """Raise PropagationError if two functions switch at one time, but a small change of a variable separates them.
 
-    The time is ``t``. Example: sign(omega_3 - c) and sign(omega_3 - d) with c = d. If c changes alone, the arguments
-    are zero at different times, and a motion cannot slide along both jumps. ``mode`` names one of the functions, a sign
-    or abs whose argument is zero at ``t``: it is the name of the number that replaces this function in formulas. The
-    other function is any whose argument is a multiple of this argument for the present values of the variables.
+    The time is ``t``, the states are ``y``. Example: sign(omega_3 - c) and sign(omega_3 - d) with c = d. If c changes
+    alone, the arguments become zero at different times. A motion slides along a jump while the argument stays at zero;
+    it cannot keep both arguments at zero.
+
+    ``mode`` is the name of the number that replaces one of the functions, a sign or abs, in formulas; its argument is
+    zero at ``t``. It is compared with each function whose argument is a multiple of this argument as long as the
+    variables keep their present values.
     """
     guard = guards.guard(interval, mode, t, y)
     own = np.array([guard.time, *guard.states, *guard.variables])

@@ -1,7 +1,8 @@
 """The derivatives of the states just after the start of a motion, whose guards may be zero there.
 
 A *guard* is the argument of a switching function (sign, abs, ..). The equations may hold a guard at zero from the start
-on, as friction holds a body at rest. The derivatives are those by variables: initial values and constants.
+on, as friction holds a body at rest. The derivatives are those with respect to the variables, which are initial values
+and constants of the scene.
 """
 
 from dataclasses import replace
@@ -20,11 +21,12 @@ Floats = NDArray[np.float64]
 
 
 def from_start(guards: Guards, interval: Interval, by: Floats) -> Floats:
-    """Return the derivatives of the seven states by the m variables just after the start of a motion, shape (7, m).
+    """Return the derivatives of the seven states just after the start of a motion, shape (7, m).
 
-    ``by`` has the derivatives at the start. The result differs from ``by`` if friction, for example, holds a component
-    of omega at zero from the start on: a component that starts near zero comes to zero at once, and its derivatives
-    become zero. Raise PropagationError if the derivatives do not exist.
+    The derivatives are those with respect to the m variables; ``by`` has their values at the start. The result differs
+    from ``by`` if friction, for example, holds a component of omega at zero from the start on: a component that starts
+    near zero comes to zero at once, and its derivatives become zero. Raise PropagationError if the derivatives do not
+    exist.
     """
     f = guards.rates(interval, interval.start, interval.first)
     for mode in interval.regime.formulas:
@@ -69,8 +71,8 @@ def _require_constant(guards: Guards, interval: Interval, mode: str, other: int,
     """Raise PropagationError if a motion starts at a jump of its rates and a variable shifts the start off the jump.
 
     The jump is that of a function (sign, floor, ..); ``mode`` is the name of the number that replaces it in formulas.
-    ``change``: the m derivatives of the function's argument by the variables; ``f``: the rates at the start; ``other``:
-    for floor(x), the value on the other side of the jump, otherwise not used.
+    ``change``: the m derivatives of the function's argument with respect to the variables; ``f``: the rates at the
+    start; ``other``: for floor(x), the value on the other side of the jump, otherwise not used.
     """
     if not change.any() or guards.is_continuous(mode):
         return
@@ -84,5 +86,5 @@ def _require_constant(guards: Guards, interval: Interval, mode: str, other: int,
         raise guards.refusal(
             interval.begin,
             f"the motion starts where {guards.name(mode)} switches, so that a larger and a smaller {variable} have "
-            "different effects; start it slightly to one side",
+            f"different effects; make {variable} slightly larger or smaller",
         )

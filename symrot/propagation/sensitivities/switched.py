@@ -21,7 +21,7 @@ Floats = NDArray[np.float64]
 
 
 class SwitchedEquations:
-    """The equations of a motion under torques that switch, and of its derivatives by variables.
+    """The equations of a motion under torques that switch, and of its derivatives with respect to variables.
 
     The argument ``keys`` names initial values and constants of the scene, such as ``"omega"`` or ``"body.mass"``. Their
     m components are the variables.
@@ -35,15 +35,19 @@ class SwitchedEquations:
         self._walks: list[Walk] = []
 
     def fit(self, scene: Scene, keys: Sequence[str]) -> bool:
-        """Return whether these equations give the motion of ``scene`` and its derivatives by the variables ``keys``."""
+        """Return whether these equations are those of the motion of ``scene`` and of its derivatives.
+
+        The derivatives are those with respect to the variables ``keys``.
+        """
         own = self.scene
         same = own.body is scene.body and own.torques is scene.torques and keys == self.keys
         return same and (self.restartable or own.initial == scene.initial)
 
     def follow(self, scene: Scene, times: Floats, begin: float | None = None) -> tuple[Floats, Floats]:
-        """Return the states at n times, shape (n, 7), and their derivatives by the m variables, shape (n, 7, m).
+        """Return the states at n times, shape (n, 7), and their derivatives, shape (n, 7, m).
 
-        Derivatives are NaN exactly at a switch at which they jump. ``begin``, s, is the initial time.
+        The derivatives are those with respect to the m variables; they are NaN exactly at a switch at which they jump.
+        ``begin``, s, is the initial time.
         """
         begin = float(scene.span.start) if begin is None else begin
         start = np.array([float(x) for x in (*scene.initial.omega_b, *scene.initial.quaternion)])
@@ -58,9 +62,11 @@ class SwitchedEquations:
         return states, by
 
     def event_slopes(self, scene: Scene, result: EventResult, tolerance: float) -> tuple[Floats, ...]:
-        """Return for each event the derivatives of the k times of this event by the m variables, shape (k, m).
+        """Return, for each event, the derivatives of its k times with respect to the m variables, shape (k, m).
 
-        ``tolerance`` is the error of the motion of ``result``.
+        ``result`` has the events of the motion. ``tolerance`` is the tolerance with which the motion in ``result`` was
+        computed: an event counts as an event at a switch if their times differ by no more than the error that this
+        tolerance allows.
         """
         begin, every = float(scene.span.start), []
         for event, kinds, times in zip(result.events, result.kinds, result.t_events, strict=True):
@@ -84,8 +90,8 @@ class SwitchedEquations:
     def switchings(self, scene: Scene, times: Floats) -> tuple[SwitchSlopes, ...]:
         """Return the switches of sign, abs, .. on the way to ``times``, s, each with the derivatives of its time.
 
-        The derivatives are those by the m variables that :attr:`keys` names. Switches after the initial time come
-        first, then those before it.
+        The derivatives are those with respect to the m variables that :attr:`keys` names. Switches after the initial
+        time come first, then those before it.
         """
         begin, every = float(scene.span.start), []
         for side in (1.0, -1.0):

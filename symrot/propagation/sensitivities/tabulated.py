@@ -2,8 +2,8 @@
 
 Between two samples the torque is a cubic polynomial of time. So the equations are those of a torque with a formula
 whose coefficients change from one interval to the next. All samples have fixed times, so nothing jumps there. The
-coefficients are linear in the samples: their derivatives by a sample are the splines of a table that is 1 at this
-sample and 0 elsewhere.
+coefficients are linear in the samples: their derivatives with respect to a sample are the splines of a table that is 1
+at this sample and 0 elsewhere.
 """
 
 from collections.abc import Mapping, Sequence
@@ -84,10 +84,10 @@ def _with_formulas(scene: Scene) -> Scene:
 
 
 class TableEquations:
-    """The equations of a motion under a torque given by a table of samples, and of its derivatives by variables.
+    """The equations of a motion under a torque given by a table of samples, and of its derivatives.
 
     The argument ``keys`` names initial values and constants of the scene, such as ``"omega"`` or ``"body.mass"``. Their
-    m components are the variables.
+    m components are the variables; the derivatives are those with respect to the variables.
     """
 
     def __init__(self, scene: Scene, keys: Sequence[str]) -> None:
@@ -119,15 +119,18 @@ class TableEquations:
         self._bound: dict[int, tuple[dict[str, float], Rows]] = {}
 
     def fit(self, scene: Scene, keys: Sequence[str]) -> bool:
-        """Return whether these equations give the motion of ``scene`` and its derivatives by the variables ``keys``."""
+        """Return whether these equations are those of the motion of ``scene`` and of its derivatives.
+
+        The derivatives are those with respect to the variables ``keys``.
+        """
         own = self.scene
         same = own.body is scene.body and own.torques is scene.torques and own.table is scene.table
         return same and keys == self.keys and (self.restartable or own.initial == scene.initial)
 
     def follow(self, scene: Scene, times: Floats, begin: float | None = None) -> tuple[Floats, Floats]:
-        """Return the states at n times, shape (n, 7), and their derivatives by the m variables, shape (n, 7, m).
+        """Return the states at n times, shape (n, 7), and their derivatives, shape (n, 7, m).
 
-        ``begin``, s, is the initial time.
+        The derivatives are those with respect to the m variables. ``begin``, s, is the initial time.
         """
         begin = float(scene.span.start) if begin is None else begin
         self._require_inside(np.append(times, begin))
@@ -144,10 +147,11 @@ class TableEquations:
     def _one_way(
         self, scene: Scene, y: Floats, by: Floats, begin: float, times: Floats, side: float
     ) -> tuple[Floats, Floats]:
-        """Return the states at n ``times``, shape (n, 7), and their derivatives by the m variables, shape (n, 7, m).
+        """Return the states at n ``times``, shape (n, 7), and their derivatives, shape (n, 7, m).
 
-        ``y`` and ``by`` are states and derivatives at the time ``begin``, s. The times are beyond it, in the direction
-        of ``side``: they increase if it is 1 and decrease if it is -1.
+        The derivatives are those with respect to the m variables. ``y`` and ``by`` are states and derivatives at the
+        time ``begin``, s. All times lie on one side of ``begin``: later and increasing if ``side`` is 1, earlier and
+        decreasing if ``side`` is -1.
         """
         edges, units = self._pieces.edges, [unit_of(scene, column) for column in self._columns]
         all_states, all_by, done, now = [], [], 0, begin
@@ -168,9 +172,10 @@ class TableEquations:
     ) -> tuple[Floats, Floats]:
         """Return the states at n times in interval k of the torque's table, (n, 7), and their derivatives, (n, 7, m).
 
-        ``y`` and ``by`` are states and derivatives at the time ``begin``, s; the derivatives are those by the m
-        variables. ``units`` has for each variable the power of two by which its derivatives are multiplied during
-        integration; the list is changed in place to the units used last.
+        The derivatives are those with respect to the m variables. ``y`` and ``by`` are states and derivatives at the
+        time ``begin``, s. ``units`` has, for each variable, the power of two by which its derivatives are multiplied
+        during integration. If derivatives turn out to be too large or too small for a power, the integration replaces
+        it by another, also in the list ``units``, so that the next interval begins with it.
         """
         values, rows = self._numbers(k)
         knot = float(self._pieces.edges[k])
@@ -186,7 +191,8 @@ class TableEquations:
     def _numbers(self, k: int) -> tuple[dict[str, float], Rows]:
         """Return two dicts for interval k of the table: parameter -> value, and parameter -> its m derivatives.
 
-        The derivatives are by the variables; parameters that depend on no variable are missing in the second dict.
+        The derivatives are those with respect to the variables; parameters that depend on no variable are missing in
+        the second dict.
         """
         if k not in self._bound:
             if len(self._bound) >= MOST_BOUND:
@@ -198,9 +204,10 @@ class TableEquations:
         return self._bound[k]
 
     def event_slopes(self, scene: Scene, result: EventResult, tolerance: float) -> tuple[Floats, ...]:
-        """Return for each event the derivatives of the k times of this event by the m variables, shape (k, m).
+        """Return, for each event, the derivatives of its k times with respect to the m variables, shape (k, m).
 
-        ``tolerance``, the error of the motion of ``result``, matters only for torques that switch.
+        ``result`` has the events of the motion. ``tolerance``, the tolerance with which the motion in ``result`` was
+        computed, is not used: it matters only for torques that switch.
         """
         slopes = []
         for event, kinds, times in zip(result.events, result.kinds, result.t_events, strict=True):
@@ -285,9 +292,10 @@ def _sample_of(scene: Scene, variable: Variable) -> tuple[int, int] | None:
 def _replaced(variable: Variable, sample: tuple[int, int] | None) -> Variable:
     """Return ``variable`` adapted to the scene in which formulas replace the table of samples.
 
-    Its function ``moved``, which returns the scene after a change of the variable, then returns a scene with formulas.
-    If the variable is a sample of the table (``sample`` is not None), ``moved`` ignores the change: how a sample
-    changes the coefficients of the formulas is computed elsewhere.
+    The function ``moved`` of a variable returns the scene after a change of the variable. The function ``moved`` of the
+    result returns this scene with formulas in place of the table. ``sample`` is None, or the place of the variable in
+    the table: (index of sample, index of component). If the variable is such a sample, ``moved`` ignores the change,
+    because :class:`TableEquations` computes how a sample changes the coefficients of the formulas.
     """
     moved = variable.moved
     if moved is None:

@@ -1,7 +1,8 @@
-"""The variables of sensitivities: initial values and constants of a scene, by which a motion is differentiated.
+"""The variables of sensitivities: initial values and constants of a scene.
 
-The kernel's constants, such as moments of inertia, follow exactly from a scene's numbers. Their derivatives are
-difference quotients over a step of 2^-80 of a variable, with errors below 2^-70.
+A motion is differentiated with respect to them. The kernel's constants, such as moments of inertia, follow exactly from
+a scene's numbers. Their derivatives are difference quotients over a step of 2^-80 of a variable, with errors below
+2^-70.
 """
 
 import re
@@ -65,13 +66,13 @@ LENGTHS = (
 
 @dataclass(frozen=True)
 class Variable:
-    """One number by which a motion is differentiated: a component of the initial state, or a constant of the scene.
+    """One number with respect to which a motion is differentiated: a component of the initial state, or a constant.
 
     Attributes
     ----------
     key, name, unit : str
         The requested name, such as ``"omega"``; the name of this component, such as ``"omega_2"``; its unit (SI, or
-        ``"deg"`` for an angle that the scene gives in degrees), or an empty text if no table states one.
+        ``"deg"`` for an angle that the scene gives in degrees), or an empty text if it is not known.
     value : Fraction
         Its present value.
     moved : function
@@ -205,7 +206,9 @@ Numbers = Mapping[str, Fraction]
 
 
 def difference(scene: Scene, variable: Variable, numbers: Callable[[Scene], Numbers]) -> dict[str, Fraction]:
-    """Return the derivatives of exact numbers of a scene by one variable, as a map from name to derivative.
+    """Return the derivatives of exact numbers of a scene with respect to one variable.
+
+    The result is a map from the name of a number to its derivative.
 
     Numbers that do not depend on the variable are left out. For the mass of a unit sphere and its moments of inertia:
     ``{"I_xx": Fraction(2, 5), ..}``.
@@ -234,7 +237,7 @@ def difference(scene: Scene, variable: Variable, numbers: Callable[[Scene], Numb
 
 
 def slopes(values: Callable[[Fraction], Numbers], step: Fraction, name: str) -> dict[str, Fraction]:
-    """Return a map from names of numbers to their derivatives by a variable.
+    """Return a map from names of numbers to their derivatives with respect to a variable.
 
     ``values`` is a function that takes a change of the variable: if it returns {"A": (3 + change)^2}, the result is
     {"A": 6}. Numbers that do not depend on the variable are left out.
@@ -261,7 +264,11 @@ def slopes(values: Callable[[Fraction], Numbers], step: Fraction, name: str) -> 
 
 
 class _Differences:
-    """Difference quotients of numbers, such as moments of inertia, by one variable, for several step sizes."""
+    """Difference quotients, for several step sizes, of numbers such as moments of inertia that depend on one variable.
+
+    ``values`` takes a change of the variable and returns the numbers by name; ``step`` is the smallest step, ``name``
+    the variable in messages.
+    """
 
     # weights of second order at places in steps: central, then to the right and to the left, for example where the mass
     # would become negative
@@ -288,13 +295,16 @@ class _Differences:
         raise InputError(f"sensitivities: expected a scene that stays valid if {name} changes, got {refusal}")
 
     def at(self, place: int) -> Numbers:
-        """Return a map from names to numbers for the variable's present value plus ``place`` steps."""
+        """Return the numbers by name, such as moments of inertia, after the variable has changed by ``place`` steps.
+
+        A step is the smallest step of the difference quotients; the variable changes from its present value.
+        """
         if place not in self._points:
             self._points[place] = self._values(place * self._step)
         return self._points[place]
 
     def slope(self, each: str) -> Fraction | None:
-        """Return the derivative of the number named ``each`` by the variable; None if it does not exist."""
+        """Return the derivative of the number named ``each`` with respect to the variable, or None if there is none."""
         first, second = self._quotient(each, 1), self._quotient(each, 2)
         if self._bends(each):
             return None

@@ -1,7 +1,7 @@
-"""The derivatives of a motion by initial values and constants: variational equations, by Taylor series.
+"""Variational equations: the derivatives of a motion with respect to initial values and constants of the scene.
 
-Motion and derivatives are one system, integrated in common steps. The derivatives of all states by one variable are a
-*column* of the matrix of derivatives.
+Motion and derivatives are one system of differential equations, integrated by Taylor series in common steps. The
+derivatives of all states with respect to one variable are a *column* of the matrix of derivatives.
 """
 
 from collections.abc import Callable, Collection, Iterable, Iterator, Mapping, Sequence
@@ -60,13 +60,13 @@ TRIES = 4
 # ------------------------------------------------------------------------------------------------ columns
 
 
-# The equations assume nothing about numbers that a variable can change: a derivative by a moment of inertia needs the
-# equations of a body without symmetry.
+# The equations assume nothing about numbers that a variable can change: the derivative with respect to a moment of
+# inertia needs the equations of a body without symmetry.
 class Column:
     """The dependence of a scene on one variable, an initial value or a constant.
 
-    ``start`` has the derivatives of the initial state by the variable, ``constants`` the derivatives of the constants
-    in the equations.
+    ``start`` has the derivatives of the initial state with respect to the variable, ``constants`` the derivatives of
+    the constants in the equations.
     """
 
     def __init__(self, scene: Scene, variable: Variable, general: Structure) -> None:
@@ -82,8 +82,8 @@ class Column:
         self.constants = every
 
     def start_from(self, initial: Initial) -> list[float]:
-        """Return the derivatives of an initial state (omega and quaternion, 7 numbers) by :attr:`variable`."""
-        # only those by a small rotation of the attitude depend on the initial state
+        """Return the 7 derivatives of an initial state, omega and quaternion, with respect to :attr:`variable`."""
+        # only the derivatives with respect to a small rotation of the attitude depend on the initial state
         if self.variable.moved is not None:
             return self.start
         slopes = rotation_slopes(initial.quaternion, self.variable.axis)
@@ -91,14 +91,18 @@ class Column:
 
     @property
     def restartable(self) -> bool:
-        """Whether a new initial state of the scene changes only the result of :meth:`start_from`, not the constants."""
+        """Whether :attr:`constants` stay valid if the scene gets another initial state.
+
+        From another initial state, the motion and its derivatives then have the same equations, and only their initial
+        values differ.
+        """
         # not for a variable that sets the initial state in another form, such as initial.attitude.angle
         variable = self.variable
         return variable.moved is None or variable.key.startswith("omega") or not any(self.start)
 
 
 def rotation_slopes(q: Any, axis: int) -> Any:
-    """Return the derivative of a quaternion by a small rotation about the body axis 0, 1 or 2."""
+    """Return the derivative of a quaternion with respect to a small rotation about the body axis 0, 1 or 2."""
     # half the product of the quaternion and the unit vector of the axis, of fractions or arrays
     q0, *v = q
     slopes = [-v[axis], *(v[i - 2] * ((i - 1) % 3 == axis) - v[i - 1] * ((i - 2) % 3 == axis) for i in range(3))]
@@ -123,13 +127,14 @@ def columns_of(scene: Scene, variables: Sequence[Variable]) -> list[Column]:
 
 
 def structure_of(scene: Scene, columns: Sequence[Column], varying: Collection[str] = ()) -> Structure:
-    """Return the structure of the equations for derivatives by variables: which constants are zero, equal or free.
+    """Return the structure of the equations of motion and derivatives: which constants are zero, equal or free.
 
-    The constants that a change of a variable changes, and the constants ``varying``, are free whatever their present
-    values: they are parameters of the equations. ``columns`` has one :class:`Column` for each variable.
+    The constants that depend on a variable, and the constants ``varying``, are free whatever their present values: they
+    are parameters of the equations. ``columns`` has one :class:`Column` for each variable.
     """
-    # Derivatives by the former are needed, and the latter differ between the motions of an ensemble. Other zeros and
-    # ones simplify the equations.
+    # The variational equations contain the derivatives of the rates with respect to the constants that depend on a
+    # variable. The constants ``varying`` differ between the motions of an ensemble. Other zeros and ones simplify the
+    # equations.
     moving = {name for column in columns for name in column.constants} | set(varying)
     general, inertia = general_structure(scene, switched(scene)), scene.body.inertia
     nonzero = {name for name, (i, j) in PRODUCTS.items() if inertia[i][j] != 0 or name in moving}
@@ -158,22 +163,25 @@ def structure_of(scene: Scene, columns: Sequence[Column], varying: Collection[st
 
 
 class SmoothEquations:
-    """The compiled equations of a scene's motion, from any initial state, and of its derivatives by variables.
+    """The compiled equations of a scene's motion, from any initial state, and of its derivatives.
 
     The argument ``keys`` names initial values and constants of the scene, such as ``"omega"`` or ``"body.mass"``. Their
-    m components are the variables.
+    m components are the variables, with respect to which the motion is differentiated.
     """
 
     def __init__(self, scene: Scene, keys: Sequence[str]) -> None:
         self.scene, self.keys, self.variables = scene, keys, read_variables(scene, keys)
         columns = columns_of(scene, self.variables)
         self.restartable = all(column.restartable for column in columns)
-        self._columns, self._parts = columns, _parts(scene, columns)
-        self._uses_time = any(part.uses_time for part in self._parts)
-        self._moved: tuple[float, list[_Part]] = (0.0, self._parts)
+        self._columns, self._groups = columns, _groups(scene, columns)
+        self._uses_time = any(group.uses_time for group in self._groups)
+        self._moved: tuple[float, list[_Group]] = (0.0, self._groups)
 
     def fit(self, scene: Scene, keys: Sequence[str]) -> bool:
-        """Return whether these equations give the motion of ``scene`` and its derivatives by the variables ``keys``."""
+        """Return whether these equations are those of the motion of ``scene`` and of its derivatives.
+
+        The derivatives are those with respect to the variables ``keys``.
+        """
         own = self.scene
         same = (
             own.body is scene.body and own.torques is scene.torques and own.table is scene.table and keys == self.keys
@@ -181,19 +189,21 @@ class SmoothEquations:
         return same and (self.restartable or own.initial == scene.initial)
 
     def follow(self, scene: Scene, times: Floats, begin: float | None = None) -> tuple[Floats, Floats]:
-        """Return the states at n times, shape (n, 7), and their derivatives by the m variables, shape (n, 7, m).
+        """Return the states at n times, shape (n, 7), and their derivatives, shape (n, 7, m).
 
-        ``begin``, s, is the initial time.
+        The derivatives are those with respect to the m variables, the components of :attr:`keys`. ``begin``, s, is the
+        initial time.
         """
         begin = float(scene.span.start) if begin is None else begin
-        parts, epoch = self._chosen(begin, times)
-        results = [part.follow(scene, times, begin, epoch) for part in parts]
+        groups, epoch = self._chosen(begin, times)
+        results = [group.follow(scene, times, begin, epoch) for group in groups]
         return results[0][0], np.concatenate([slopes for _, slopes in results], axis=2)
 
     def event_slopes(self, scene: Scene, result: EventResult, tolerance: float) -> tuple[Floats, ...]:
-        """Return for each event the derivatives of the k times of this event by the m variables, shape (k, m).
+        """Return, for each event, the derivatives of its k times with respect to the m variables, shape (k, m).
 
-        ``tolerance``, the error of the motion of ``result``, matters only for torques that switch.
+        ``result`` has the events of the motion. ``tolerance``, the tolerance with which the motion in ``result`` was
+        computed, is not used: it matters only for torques that switch.
         """
         slopes = []
         for event, kinds, times in zip(result.events, result.kinds, result.t_events, strict=True):
@@ -207,33 +217,39 @@ class SmoothEquations:
 
     def _rates(self, scene: Scene, times: Floats, states: Floats) -> Floats:
         """Return the time derivatives of the states of the motion of ``scene`` at n times, shape (n, 7)."""
-        parts, epoch = self._chosen(float(scene.span.start), times)
-        rows = [parts[0].rates(t, state) for t, state in zip(times - epoch, states, strict=True)]
+        groups, epoch = self._chosen(float(scene.span.start), times)
+        rows = [groups[0].rates(t, state) for t, state in zip(times - epoch, states, strict=True)]
         return np.array(rows).reshape(len(times), len(STATES))
 
-    def _chosen(self, begin: float, times: Floats) -> "tuple[list[_Part], float]":
+    def _chosen(self, begin: float, times: Floats) -> "tuple[list[_Group], float]":
         """Return the equations for a motion from ``begin``, s, and the scene time, s, from which they count time.
 
         They count time from ``begin`` if the motion is far from t = 0 and depends on time, else from 0.
         """
         if self._uses_time and len(times) and starts_far(begin, float(times.min()), float(times.max())):
-            return self._parts_from(begin), begin
-        return self._parts, 0.0
+            return self._groups_from(begin), begin
+        return self._groups, 0.0
 
-    def _parts_from(self, epoch: float) -> "list[_Part]":
+    def _groups_from(self, epoch: float) -> "list[_Group]":
         """Return the equations with time counted from an epoch, s; the equations for the last epoch are used again."""
         if epoch != self._moved[0]:
-            self._moved = (epoch, _parts(self.scene, self._columns, epoch))
+            self._moved = (epoch, _groups(self.scene, self._columns, epoch))
         return self._moved[1]
 
 
-def _parts(scene: Scene, columns: Sequence[Column], epoch: float = 0.0) -> "list[_Part]":
-    """Return the equations of the derivatives by all variables (``columns``), with time counted from ``epoch``, s."""
-    return [_Part(scene, columns[own.start : own.stop], epoch) for own in groups_of_columns(len(columns))]
+def _groups(scene: Scene, columns: Sequence[Column], epoch: float = 0.0) -> "list[_Group]":
+    """Return the equations of a motion and its derivatives, with time counted from ``epoch``, s.
+
+    The variables, one for each of ``columns``, are divided into groups; each group has its own equations and library.
+    """
+    return [_Group(scene, columns[own.start : own.stop], epoch) for own in groups_of_columns(len(columns))]
 
 
-class _Part:
-    """A compiled library that integrates the motion and its derivatives by m variables, at most :data:`AT_ONCE`."""
+class _Group:
+    """A compiled library that integrates a motion and its derivatives with respect to one group of variables.
+
+    A group has at most :data:`AT_ONCE` variables.
+    """
 
     def __init__(self, scene: Scene, columns: Sequence[Column], epoch: float) -> None:
         # epoch: the scene time, s, from which the equations count time
@@ -260,10 +276,11 @@ class _Part:
         return list(self._rates.evaluate({**values, "t": float(time)}, FLOAT_FUNCTIONS, float).values())
 
     def follow(self, scene: Scene, times: Floats, begin: float, epoch: float) -> tuple[Floats, Floats]:
-        """Return the states at n times, shape (n, 7), and their derivatives by the variables of this part, (n, 7, m).
+        """Return the states at n times, shape (n, 7), and their derivatives, shape (n, 7, m).
 
-        ``times`` and the initial time ``begin`` are times of the scene, s. ``epoch`` is the time of the scene, s, from
-        which the equations of this part count time.
+        The derivatives are those with respect to the m variables of this group. ``times`` and the initial time
+        ``begin`` are times of the scene, s. ``epoch`` is the time of the scene, s, from which the equations of this
+        group count time.
         """
         start = [float(value) for value in (*scene.initial.omega_b, *scene.initial.quaternion)]
         starts = [column.start_from(scene.initial) for column in self.columns]
@@ -290,18 +307,23 @@ def follow_columns(
     times: Floats,
     labelled: Callable[[PropagationError], PropagationError],
 ) -> tuple[Floats, Floats, list[float]]:
-    """Return states at n times, shape (n, 7), their derivatives by m variables, (n, 7, m), and the units used last.
+    """Return states at n times, shape (n, 7), their derivatives, (n, 7, m), and the units of the last integration.
+
+    The derivatives are those with respect to m variables. During integration they are multiplied by units. If the
+    derivatives with respect to a variable stay so small that the error control hardly notices them, the motion is
+    integrated again with a larger unit; derivatives are returned without units.
 
     Parameters
     ----------
     library : MotionLibrary
         The code that integrates motion and derivatives.
     values, slopes : sequences
-        The parameters of the rates; and for each variable, the derivatives by it of the parameters that depend on it.
+        The parameters of the rates; and for each variable, the derivatives with respect to it of those parameters that
+        depend on it.
     start, starts : sequences
-        The states at the time ``begin``; and for each variable, the derivatives of the states by it.
+        The states at the time ``begin``; and for each variable, the derivatives of these states with respect to it.
     units : m numbers
-        For each variable, a power of two near its size, by which its derivatives are multiplied during integration.
+        For each variable, a power of two near its size: the unit by which its derivatives are multiplied at first.
     begin : float
         Initial time, s, on the clock of the library.
     times : array, shape (n,)
@@ -344,22 +366,25 @@ def follow_interval(
     times: Floats,
     labelled: Callable[[PropagationError], PropagationError],
 ) -> tuple[Floats, Floats]:
-    """Return states at n times of an interval, shape (n, 7), and their derivatives by m variables, (n, 7, m).
+    """Return states at n times of an interval, shape (n, 7), and their derivatives, shape (n, 7, m).
+
+    The derivatives are those with respect to the m variables.
 
     Parameters
     ----------
     libraries : iterable of (range, sequences of str, MotionLibrary)
         For each group of variables: their indices from 0 to m - 1, the names of the parameters that depend on each
-        variable, and the code that integrates the motion and its derivatives by these variables.
+        variable, and the code that integrates the motion and its derivatives with respect to these variables.
     parameters : pairs of name and formula
         The parameters of the rates, in order.
     values, rows : mappings
         Name of a parameter -> its value; name of a parameter -> its m derivatives, if it depends on a variable.
     y, by : arrays, shapes (7,) and (7, m)
-        States, and their derivatives by the variables, at the time ``begin``.
+        States at the time ``begin``, and their derivatives with respect to the variables.
     units : list of m floats
-        For each variable, a power of two near its size, by which its derivatives are multiplied during integration. The
-        list is changed in place to the units used last, which :func:`follow_columns` returns.
+        For each variable, a power of two near its size: the unit by which its derivatives are multiplied at first. If a
+        unit makes the derivatives too large or too small, another one replaces it. The list is changed in place to the
+        units of the last integration, with which the next interval begins.
     begin, times, labelled
         As for :func:`follow_columns`: initial time, sample times, and the function that returns the error to raise.
     """
@@ -380,16 +405,17 @@ def follow_interval(
 def groups_of_columns(count: int) -> Iterator[range]:
     """Yield the indices 0 to ``count - 1`` of variables in ranges of at most :data:`AT_ONCE` indices.
 
-    One compiled library integrates the derivatives by the variables of one range.
+    One compiled library integrates the derivatives with respect to the variables of one range.
     """
     for first in range(0, count, AT_ONCE):
         yield range(first, min(first + AT_ONCE, count))
 
 
 def unit_of(scene: Scene, column: Column) -> float:
-    """Return the power of two by which a column of derivatives is multiplied: near the value of its variable.
+    """Return a power of two near the value of a variable, by which the derivatives with respect to it are multiplied.
 
-    For a component of omega it is near the largest component; for a variable that is zero, or for a rotation, it is 1.
+    The multiplied derivatives are about as large as the states. For a component of omega, the power is near the largest
+    component. It is 1 if the variable is zero, or if the variable is a small rotation of the initial attitude.
     """
     # a column times this number is about as large as the states, so that one error control fits both
     value = abs(float(column.variable.value))
@@ -412,8 +438,8 @@ def fitting_unit(unit: float, by: Floats) -> float:
 def small_rotation(q: Floats, slopes: Floats) -> Floats:
     """Return derivatives of the attitude as small rotations about the body axes: ``2 * conjugate(q) * slopes``.
 
-    ``slopes`` are the derivatives of the quaternions ``q`` by variables. Shapes: q (n, 4), slopes (n, 4, m), result (n,
-    3, m).
+    ``slopes`` are the derivatives of the quaternions ``q`` with respect to m variables. The shapes are (n, 4) for
+    ``q``, (n, 4, m) for ``slopes`` and (n, 3, m) for the result.
     """
     scalar, vector = q[:, :1, None], q[:, 1:, None]
     along, across = slopes[:, :1], slopes[:, 1:]

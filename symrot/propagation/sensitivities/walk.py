@@ -1,4 +1,4 @@
-"""A motion through the switches of its torques, with its derivatives by variables at any time."""
+"""A motion through the switches of its torques, with its derivatives with respect to variables at any time."""
 
 from collections.abc import Callable
 from dataclasses import replace
@@ -38,7 +38,7 @@ class Walk:
     Parameters
     ----------
     parameter_slopes : ParameterSlopes
-        The variables and the derivatives of the parameters by them.
+        The variables, and the derivatives of the parameters with respect to them.
     scene : Scene
         The scene with the initial state.
     begin, end : float
@@ -64,7 +64,7 @@ class Walk:
 
     @property
     def switchings(self) -> list[SwitchSlopes]:
-        """The switches of the motion, with the derivatives of their times by the variables."""
+        """The switches of the motion, with the derivatives of their times with respect to the variables."""
         return self._crossings.switchings
 
     def covers(self, scene: Scene, begin: float, end: float) -> bool:
@@ -75,7 +75,10 @@ class Walk:
         return same and self.side * (end - begin) > 0.0 and self.side * (self.end - end) >= 0.0
 
     def _differentiate(self) -> None:
-        """Compute the derivatives of the states by the variables at the start and the end of each interval."""
+        """Compute and store the derivatives of the states at the start and at the end of each interval.
+
+        They are derivatives with respect to the variables.
+        """
         by = np.array([column.start_from(self.scene.initial) for column in self.parameter_slopes.columns]).T
         guards, previous = self.guards, None
         for interval in self.intervals:
@@ -92,9 +95,9 @@ class Walk:
             previous = interval
 
     def _integrate(self, interval: Interval, times: Floats) -> tuple[Floats, Floats]:
-        """Return the states at n times of an interval, shape (n, 7), and their derivatives by m variables, (n, 7, m).
+        """Return the states at n times of an interval, shape (n, 7), and their derivatives, shape (n, 7, m).
 
-        The times are s after ``interval.zero``.
+        The derivatives are those with respect to the m variables. The times are s after ``interval.zero``.
         """
         program, parameters = self.guards.program(interval)
         values, rows = self.guards.bound(parameters, interval, "rates")
@@ -117,10 +120,10 @@ class Walk:
         return named
 
     def sample(self, times: Floats) -> tuple[Floats, Floats]:
-        """Return the states at n times of the scene, shape (n, 7), and their derivatives by m variables, (n, 7, m).
+        """Return the states at n times of the scene, shape (n, 7), and their derivatives, shape (n, 7, m).
 
-        The times, s, lie between start and end of the motion; the start itself is excluded. Derivatives are NaN exactly
-        at a switch at which they jump.
+        The derivatives are those with respect to the m variables; they are NaN exactly at a switch at which they jump.
+        The times, s, lie between start and end of the motion; the start itself is excluded.
         """
         order = np.argsort(self.side * times, kind="stable")
         ordered, count = times[order], 0
@@ -149,8 +152,9 @@ class Walk:
     def sides(self, t: float, tolerance: float) -> list[tuple[Floats, Floats, Floats]]:
         """Return (state, rates, derivatives) at the time t, s: one triple, or two at a switch, before and after it.
 
-        The derivatives are those of the state by the variables. The time t counts as the time of a switch if the two
-        differ by no more than the error, in s, that a motion with the tolerance ``tolerance`` may cause.
+        The derivatives are those of the state with respect to the variables. ``tolerance`` is the tolerance of the
+        motion in which the time t was located. t counts as the time of a switch if both differ by no more than the
+        error that a located time may have at this tolerance.
         """
         for place, interval in enumerate(self.intervals[:-1]):
             following = self.intervals[place + 1]

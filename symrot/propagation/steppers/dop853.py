@@ -55,9 +55,9 @@ between two moves are alike and add up: with 8192 steps they were five times as 
 
 
 def step_tolerance(tolerance: float) -> tuple[float, float]:
-    """Return the error allowed in one long step, and the length from which a step is long, as a fraction of the span.
+    """Return the error allowed in one long step, and the least length of a long step, as a fraction of the span.
 
-    A shorter step is allowed an error in proportion to its length.
+    In a shorter step, the allowed error is smaller in proportion to its length.
     """
     # Steps are about tolerance^(1/8) natural times long (a natural time: the motion changes noticeably), and a shorter
     # step gets a proportional share of the error. So the sum of all shares grows with the number of natural times in
@@ -94,16 +94,16 @@ def translation_unit(
         One number per block: the size to which errors of the block are relative (1 for a unit quaternion, or for an
         angle in rad). 0 means the norm of the block itself (angular velocity).
     enclosure : str
-        Output of :func:`symrot.codegen.enclosure.source.enclosure_source` for the kernel and order
-        :data:`DENSE_ORDER`, and of ``rounding_source``: C code for bounds of the rates, which limit the steps, and of
-        their rounding errors.
+        C code that bounds the changes of the rates, so that the stepper can limit its steps, and the rounding errors of
+        the rates. It is the output of :func:`symrot.codegen.enclosure.source.enclosure_source` for the kernel and the
+        order :data:`DENSE_ORDER`, followed by the output of :func:`symrot.codegen.enclosure.source.rounding_source`.
     """
     edges = list(blocks)
     if edges[:1] != [0] or edges[-1] != states or edges != sorted(set(edges)) or len(scales) != len(edges) - 1:
         raise InputError(
-            f"blocks: expected block edges that increase from 0 to {states} (the number of states), and one scale per "
-            "block, the size to which its errors are relative (a block is a group of consecutive states whose errors "
-            f"are measured together), got edges {edges} and scales {list(scales)}"
+            f"blocks: expected block edges that increase from 0 to {states} (the number of states), and one scale for "
+            f"each block, got edges {edges} and scales {list(scales)}; a block is a group of consecutive states whose "
+            "errors are measured together, and its scale is the size to which these errors are relative"
         )
     bounds = c_text("propagation/enclosures/enclosure.h")
     return "\n".join(

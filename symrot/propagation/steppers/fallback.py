@@ -19,7 +19,13 @@ from symrot.closed_form.arithmetic.double_double import two_sum
 from symrot.errors import InputError
 from symrot.propagation import progress
 from symrot.propagation.enclosures.step_limit import Deviations, longest_followed
-from symrot.propagation.steppers.integration_stopped import IntegrationStopped, add_samples, why_hopeless, why_stuck
+from symrot.propagation.steppers.integration_stopped import (
+    IntegrationStopped,
+    add_samples,
+    why_exhausted,
+    why_hopeless,
+    why_stuck,
+)
 from symrot.propagation.steppers.recording import Recording
 from symrot.propagation.steppers.rounding import RoundingSum
 from symrot.propagation.steppers.segments import Segment, segments, split_at
@@ -284,7 +290,10 @@ class _Integration:
 
     @property
     def work(self) -> int:
-        """Number of evaluations so far, of the rates and of their bounds together; ``max_steps`` limits this number."""
+        """Number of evaluations so far: of the rates, and of the bounds of the rates that limit the steps.
+
+        The option ``max_steps`` limits this number.
+        """
         return self.evaluations + (self.deviations.spent - self.before if self.deviations else 0)
 
     def stats(self) -> Stats:
@@ -454,7 +463,10 @@ class _Integration:
                     solver.max_step = longest
 
     def _add_rounding(self, t: float, y: Floats, length: float) -> None:
-        """Add the rounding errors of a step of ``length``, s, that begins with the states ``y`` at the time ``t``."""
+        """Add the rounding errors of one step to the sum of the rounding errors of the motion.
+
+        The step begins with the states ``y`` at the time ``t``, s, and has the length ``length``, s.
+        """
         error, drift = ROUNDED_STEP * self.size, LSODA_DRIFT * self.size if self.method == "LSODA" else 0.0
         if self.deviations:
             errors = self.deviations.rounding_errors(t, y.tolist())
@@ -462,11 +474,14 @@ class _Integration:
         self.sums[-1].add(t, error, self.size, drift)
 
     def _move_clock(self, clock: Clock, now: float) -> float:
-        """Move the epoch by ``now``, s, to the present time; return the rounding error of the new epoch, s."""
+        """Move the epoch to the present time; return the present time minus the rounded new epoch, s.
+
+        The epoch is the time from which the right-hand side counts, ``now`` the present time since the old epoch, s.
+        ``clock`` takes the new epoch and returns a right-hand side that counts from it, with its parameters.
+        """
         self.epoch, rest = two_sum(self.epoch, now)
         self.rhs, p = clock(self.epoch)
         self.p = np.array(p, dtype=np.float64)
-        # this is the present time minus the epoch, which is rounded to a double
         return float(rest)
 
     def _judge_pace(self, t: float, stop: float) -> None:
@@ -483,7 +498,7 @@ class _Integration:
                 raise IntegrationStopped(t, reason, stop)
             self.mark = (work, t)
         if self._spent > self.max_evaluations:
-            raise IntegrationStopped(t, f"{self.max_evaluations} evaluations were not enough", stop)
+            raise IntegrationStopped(t, why_exhausted(self.max_evaluations), stop)
 
     @property
     def _spent(self) -> int:
@@ -504,7 +519,7 @@ class _Integration:
     def _derivative(self, t: float, y: Floats) -> Floats:
         self.evaluations += 1
         if self.evaluations > self.max_evaluations:
-            raise IntegrationStopped(self.epoch + float(t), f"{self.max_evaluations} evaluations were not enough")
+            raise IntegrationStopped(self.epoch + float(t), why_exhausted(self.max_evaluations))
         dy = np.asarray(self.rhs(t, y, self.p), dtype=np.float64)
         if dy.shape != self.y0.shape:
             raise InputError(

@@ -9,7 +9,7 @@ from numpy.typing import NDArray
 from symrot.errors import PropagationError
 from symrot.propagation.steppers.stats import Stats
 
-__all__ = ["HOPELESS", "IntegrationStopped", "Samples", "add_samples", "why_hopeless", "why_stuck"]
+__all__ = ["HOPELESS", "IntegrationStopped", "Samples", "add_samples", "why_exhausted", "why_hopeless", "why_stuck"]
 
 HOPELESS = 3.0  # times the limit of steps: a motion that would need more steps at its present pace is stopped
 MANY_TICKS = 2**20  # doubles between both ends of a motion: with fewer, times are too coarse for its steps
@@ -35,7 +35,10 @@ class IntegrationStopped(PropagationError):
         return IntegrationStopped, (self.t, self.reason, self.stop)
 
     def later(self, epoch: float) -> "IntegrationStopped":
-        """Return the error with its times converted to scene times, by adding ``epoch``, s; without ``recording``."""
+        """Return a copy of the error with its times converted to scene times, by adding ``epoch``, s.
+
+        The copy has no ``recording``: a recorded motion takes times since the epoch, not scene times.
+        """
         later = IntegrationStopped(self.t + epoch, self.reason, None if self.stop is None else self.stop + epoch)
         if self.samples is not None:
             later.samples = self.samples._replace(stats=self.samples.stats.later(epoch))
@@ -84,10 +87,19 @@ def why_stuck(reason: str, t: float, t0: float, stop: float) -> str:
     return f"the next steps are too short for doubles, which lie {apart:.3g} s apart at this time; {advice}"
 
 
-def why_hopeless(steps: int, way: float, left: float, limit: int) -> str:
-    """Return the sentence that a motion would need far more than ``limit`` steps at its present pace; else ``""``.
+def why_exhausted(limit: int) -> str:
+    """Return the reason of a motion that stops because its equations were evaluated more than ``limit`` times."""
+    return (
+        f"{limit} evaluations of the equations of motion, or of bounds of their rates, were not enough; shorten the "
+        "span, or choose a larger tolerance or another method"
+    )
 
-    The last ``steps`` steps covered ``way`` s; ``left`` s remain.
+
+def why_hopeless(steps: int, way: float, left: float, limit: int) -> str:
+    """Return a sentence if a motion would need far more than ``limit`` steps at its present pace, else an empty text.
+
+    The sentence says how many steps the motion would need. The last ``steps`` steps covered ``way`` s; ``left`` s
+    remain. Evaluations may be counted in place of steps.
     """
     # by far: more than three times
     if steps * left <= HOPELESS * limit * way:

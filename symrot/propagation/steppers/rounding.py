@@ -45,14 +45,19 @@ class RoundingSum:
             self.beyond = t
 
     def fields(self) -> dict[str, float]:
-        """Return the sum so far as fields of the struct of a run in C, which adds the errors of further steps.
+        """Return the sum so far as a dict of fields for the C struct with the state of an integration.
 
-        The dict has the keys ``"rounded"`` (sum of the squares) and ``"largest"`` (size).
+        The C code adds the errors of further steps to these fields, and :meth:`read` returns the sum to this object.
+
+        The keys are ``"rounded"`` for :attr:`squares` and ``"largest"`` for :attr:`size`.
         """
         return {"rounded": self.squares, "largest": self.size}
 
     def read(self, run: Any) -> None:
-        """Replace the sum by that of the C struct ``run``, which has added the errors of further steps."""
+        """Replace the sum by the sum in the C struct ``run``.
+
+        The C code has added to it the errors of further steps.
+        """
         self.squares, self.size = run.rounded, run.largest
         if self.beyond is None and not math.isnan(run.rounded_from):
             self.beyond = run.rounded_from

@@ -44,9 +44,9 @@ class Stats(NamedTuple):
     switchings : tuple of Switching
         The functions that switch, with their times.
     rounded_beyond : tuple of float
-        Times, s, beyond which the rounding of the time in a torque, or of the steps of a method of SciPy, may move the
-        motion by more than the tolerance: at most one time on each side of the start. Empty if the rounding does not
-        matter.
+        Times, s, from which on rounding errors may change the motion by more than the tolerance: at most one time after
+        the start of the motion and one before it. The errors arise where the formula of a torque contains the time, and
+        in the steps of SciPy's methods. Empty if the rounding errors do not matter.
 
     Examples
     --------
@@ -67,15 +67,17 @@ class Stats(NamedTuple):
     def later(self, epoch: float) -> "Stats":
         """Return the statistics of an integration with :attr:`rounded_beyond` converted to scene times.
 
-        ``epoch``, s, is added to these times. Times of switches need no conversion: an integration alone records none.
+        ``epoch``, s, is added to these times. The times of switches need no conversion: one integration covers one
+        smooth interval between switches and records none.
         """
         return self._replace(rounded_beyond=tuple([t + epoch for t in self.rounded_beyond]))
 
 
 def rounding_warning(t: float, method: str) -> str:
-    """Return a sentence that warns of rounding errors of a motion beyond the time t, s, of ``Stats.rounded_beyond``.
+    """Return a warning that from the time t, s, on rounding errors may exceed the tolerance.
 
-    They are errors of formulas that contain the time and, if ``method`` is a method of SciPy, errors of its steps.
+    t is one of the times in ``Stats.rounded_beyond``. The errors arise in formulas that contain the time and, if
+    ``method`` is a method of SciPy, also in its steps.
     """
     if method.startswith("scipy"):
         return (
@@ -92,7 +94,7 @@ def stats_of(cost: Any, seconds: float, switchings: Iterable[Switching], rounded
     """Return the statistics of a motion from its cost and its switches, which are sorted by time.
 
     ``cost`` has the numbers of accepted steps, rejected steps and evaluations; ``seconds`` is the computing time.
-    ``rounded_beyond`` has times, s, beyond which rounding errors may exceed the tolerance.
+    ``rounded_beyond`` has times, s, from which on rounding errors may exceed the tolerance.
     """
     accepted, rejected, evaluations = map(int, cost)
     listed = tuple(sorted(switchings))

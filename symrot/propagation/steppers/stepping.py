@@ -475,7 +475,10 @@ class Integration:
         return status
 
     def judge_pace(self, tried: int, run: Run) -> None:
-        """Raise IntegrationStopped if the rest of the motion would take far more steps than the limit."""
+        """Raise IntegrationStopped if the rest of the motion would take far more steps than the limit.
+
+        ``tried`` is the number of steps so far, accepted and rejected.
+        """
         # the steps since the last check show the pace
         reason = why_hopeless(tried - self.mark[0], abs(run.t - self.mark[1]), abs(run.stop - run.t), self.max_steps)
         if reason:

@@ -236,7 +236,10 @@ def _sum(row: Mapping[int, str]) -> str:
 
 
 def c_header() -> str:
-    """Return the text of ``dop853_tableau.h``, which defines every sum of stages as a macro over ``k(stage)``."""
+    """Return the text of ``dop853_tableau.h``: a C macro for each weighted sum of stages in DOP853.
+
+    The argument of a macro is itself a macro: ``k(i)`` stands for stage i.
+    """
     lines = [
         "/*",
         " * Coefficients of Dormand and Prince's 8(5,3) pair and its dense output, as sums over k(stage).",

@@ -105,7 +105,10 @@ def translation_unit(
     invariants: str = "",
     enclosed: bool = True,
 ) -> str:
-    """Return the C source of a library: the jet of a right-hand side and the stepper around it.
+    """Return the C source of a library that integrates a motion by Taylor series.
+
+    The source contains the function that computes the Taylor coefficients of the states from the right-hand side, and
+    the stepper that calls it.
 
     Parameters
     ----------
@@ -155,7 +158,7 @@ def integration(
 ) -> Integration:
     """Return the integration of a motion by Taylor series; see :func:`symrot.propagation.steppers.dop853.integration`.
 
-    Its ``stats`` count the jets (lists of Taylor coefficients) as evaluations.
+    Its ``stats`` count as one evaluation the computation of all Taylor coefficients at one time.
 
     Parameters
     ----------
@@ -174,7 +177,7 @@ def integration(
 
 
 class _Stepper(Stepper):
-    """A loaded library that computes Taylor coefficients (a jet) and steps, built from :func:`translation_unit`."""
+    """A loaded library that integrates a motion by Taylor series, built from the source of :func:`translation_unit`."""
 
     name = "taylor"
     reals = (

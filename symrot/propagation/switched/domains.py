@@ -24,8 +24,9 @@ def may_lose_value(node: Node) -> bool:
 def excess(node: Node, values: Mapping[str, Floats], sizes: Mapping[str, Floats]) -> Floats:
     """Return how far arguments of sqrt, log, asin and acos in a formula lie outside their domains, 0 or less if inside.
 
-    The distance is relative to the sizes of the terms of the argument; ``sizes`` are those of the symbols. Rounding and
-    the tolerance of a motion may cause a small excess: q0 may be 1 + 1e-12.
+    ``values`` has the values of the symbols at n times. ``sizes`` has the sizes with which errors of these values are
+    compared, such as 1 for q0. The distance is relative to the size of the argument, the sum of the sizes of its terms.
+    Rounding and the tolerance of a motion may cause a small excess: q0 may be 1 + 1e-12.
     """
     inner = [excess(child, values, sizes) for child in children(node) if may_lose_value(child)]
     if node[0] == "call" and node[1] in PARTIAL and names(node) & CHANGING:
@@ -38,7 +39,11 @@ def excess(node: Node, values: Mapping[str, Floats], sizes: Mapping[str, Floats]
 
 
 def _size(node: Node, values: Mapping[str, Floats], sizes: Mapping[str, Floats]) -> Floats:
-    """Return the size of a formula without cancellation: |a| + |b| for a - b."""
+    """Return the size of a formula without cancellation: |a| + |b| for a - b.
+
+    ``values`` and ``sizes`` are those of the symbols, as for :func:`excess`. A symbol in ``sizes`` has this size, other
+    terms have their absolute values as sizes.
+    """
     if node[0] == "symbol" and node[1] in sizes:
         return sizes[node[1]]
     if node[0] in ("+", "-", "neg"):

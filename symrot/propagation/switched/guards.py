@@ -56,17 +56,19 @@ class Guards(RunState):
         return " and ".join(self._name(mode) for mode in sorted(self.held))
 
     def _regime(self, modes: Modes, held: frozenset[str] | None = None) -> Regime:
-        """Return the smooth motion (regime) for given values of the functions sign, abs, ..
+        """Return the smooth motion (a regime) for given values of the functions sign, abs, ..
 
-        ``held`` names the functions whose arguments stay at zero, by default the functions that are held now.
+        ``modes`` has these values by name. ``held`` names the functions whose arguments stay at zero, by default the
+        functions that are held now.
         """
         try:
             return self.system.regime(self.held if held is None else held, modes)
-        except InputError:  # the equations have no such motion or several
+        except InputError as reason:
             raise IntegrationStopped(
                 self.t,
-                f"the motion would slide along the jump of {self._names_of_held()}, but not in exactly one way: the "
-                "equations have no solution or several; change the torque, or end the motion at this time",
+                f"the motion would slide along the jump of {self._names_of_held()} (the states would stay at this "
+                f"jump), which symrot cannot compute: {str(reason).removeprefix('torque: ')}, or end the motion at "
+                "this time",
                 self.end,
             ) from None
 
@@ -94,9 +96,12 @@ class Guards(RunState):
         return {name.removesuffix(" of t"): column for name, column in zip(names, quantities.T, strict=True)}
 
     def _has_no_value(self, regime: Regime, mode: str, times: Floats, states: Floats) -> NDArray[np.bool_]:
-        """Return, for each of ``times``, whether the argument of a function (sign, floor, ..) has no value there.
+        """Return, for each of n ``times``, whether the argument of a function (sign, floor, ..) has no value there.
 
-        An argument that lies outside its domain by no more than the error of the motion counts as having a value.
+        ``mode`` is the name of the number that replaces the function in formulas. ``regime`` is the smooth motion
+        between two switches on which the times lie, ``states`` are its states there, shape (n, N). The argument has no
+        value if it contains, for example, the root of a negative number. A number that lies outside the domain of such
+        a root by no more than the error of the motion counts as having a root.
         """
         columns = self._columns(times, states)
         rate = np.sqrt(sum(columns[f"omega_{i}"] ** 2 for i in (1, 2, 3)))
@@ -135,8 +140,10 @@ class Guards(RunState):
     ) -> tuple[list[Guard], list[Guard]]:
         """Return two lists of guards: negative just after the start of ``piece``, and negative at its end.
 
-        A guard is a formula that turns negative where a function (sign, floor, ..) switches. ``active`` says for each
-        guard of the smooth motion ``regime`` whether its zero ends this motion; other guards are left out.
+        A guard is a formula that turns negative where a function (sign, floor, ..) switches. ``piece`` is an interval
+        of the smooth motion ``regime``. ``active`` says for each guard of this motion whether the motion ends where the
+        guard is zero; the other guards are left out. ``values`` are the values of the parameters of the library that
+        evaluates the guards.
         """
         formulas = [guard.formula for guard in regime.guards]
         # such a function should have switched before the piece or within it; active: guards that can end the regime

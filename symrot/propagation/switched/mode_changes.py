@@ -77,8 +77,8 @@ class ModeChanges(Guards):
         A guard is a formula that turns negative where a function (sign, floor, ..) switches. The function must still
         switch if the sign of the formula just after the present time is at most ``largest_sign``, which is -1 or 0.
         Functions that have switched at this time, or whose arguments are held at zero, are left out. ``active`` says
-        for each guard of the smooth motion ``regime`` whether its zero ends this motion: the others are left out too.
-        ``values`` are the parameters of the guards.
+        for each guard of the smooth motion ``regime`` whether the motion ends where the guard is zero: the others are
+        left out too. ``values`` are the parameters of the guards.
         """
         # Functions that switch at one time do so one after the other; the rates may have no value until the last one
         # has, such as a root of a negative argument.
@@ -106,15 +106,17 @@ class ModeChanges(Guards):
     def _not_unique(self) -> IntegrationStopped:
         return IntegrationStopped(
             self.t,
-            f"the motion slides along the jump of {self._names_of_held()}, but from this time on nearby motions lead "
-            "away from it: its continuation is not unique; end the motion at this time",
+            f"the motion slides along the jump of {self._names_of_held()} (the states stay at this jump), but from "
+            "this time on nearby motions lead away from the jump: the motion can go on in several ways; end the motion "
+            "at this time",
             self.end,
         )
 
     def _no_longer_held(self) -> None:
         """Stop holding x at zero in a function sign(x) if the switch of another function makes x leave zero.
 
-        Raise IntegrationStopped if there is no such function: the continuation of the motion is then not unique.
+        Raise IntegrationStopped if no held function can be released in this way: the continuation of the motion is then
+        not unique.
         """
         released = self._released_by_another(solvable=False)
         if released is None:
@@ -166,19 +168,20 @@ class ModeChanges(Guards):
             if (mode, self.modes[mode]) in self.left:
                 raise IntegrationStopped(
                     self.t,
-                    f"the motion would slide along a jump of {self._name(mode)}; symrot computes sliding only for "
-                    "functions that jump where their argument changes sign, such as sign and step, not for floor and "
-                    "mod",
+                    f"the motion would slide along a jump of {self._name(mode)} (the states would stay at this jump); "
+                    "symrot computes sliding only for functions that jump where their argument changes sign, such as "
+                    "sign and step, not for floor and mod",
                     self.end,
                 )
         for other in asleep - self._asleep():
             self._wake(other)
 
     def _leaves(self, mode: str, held: frozenset[str], modes: Modes) -> bool:
-        """Return whether x in sign(x), zero now, gets the sign ``modes[mode]`` if sign(x) has this value from here on.
+        """Return whether x, zero now, really gets the sign ``modes[mode]`` if sign(x) has this value from now on.
 
-        ``mode`` is the name of the number that replaces sign(x). The other functions have the values in ``modes``,
-        except that the arguments of the functions ``held`` stay at zero.
+        ``mode`` is the name of the number that replaces sign(x) in the equations; this number determines the rates, and
+        thus whether x becomes positive or negative. The other functions have the values in ``modes``, except that the
+        arguments of the functions ``held`` stay at zero.
         """
         regime = self._regime(modes, held)
         rates, values = regime.bound(modes, self.zero)
@@ -281,7 +284,9 @@ class ModeChanges(Guards):
         if self.side < 0.0:
             raise IntegrationStopped(
                 self.t,
-                "a motion that slides along a switch cannot be followed backward: it has more than one past",
+                f"before this time, the motion would slide along the jump of {self._name(mode)} (the states would stay "
+                "at this jump); symrot does not compute such a motion, because forward in time it can leave the jump "
+                "at any time and on either side",
                 self.end,
             )
         mode, _ = self.system.twins[mode][0]
@@ -294,12 +299,13 @@ class ModeChanges(Guards):
         self._regime(self.modes)
 
     def _comes_to_rest(self, regime: Regime) -> bool:
-        """Give sign(x) the value sign(0) if x is held at zero but would stay zero with this value, too.
+        """Release each held sign(x) for which the value 0 keeps x at zero, and set it to sign(0) = 0.
 
-        Only functions whose value at zero affects the motion are examined. Return whether there was such a function.
+        The argument x then stays zero without being held, as omega of a body at rest that no torque drives.
+
+        Only functions whose value at zero affects the motion are examined. Return whether a function was released.
         """
-        # Held: the equations contain the value of sign(x) between -1 and 1 for which x remains zero. If x remains zero
-        # with sign(0) too, as for a body at rest that no torque drives, sign(0) replaces it.
+        # While x is held, the equations determine the value of sign(x), between -1 and 1, for which x remains zero.
         resting = [mode for mode in sorted(self.held - self.rested) if self.system.matters_at_zero(mode)]
         if resting:
             zeros = regime.zeros(self.modes, self.zero, self.y)
@@ -382,8 +388,9 @@ class ModeChanges(Guards):
             if self.settled > MOST_SWITCHES:
                 raise IntegrationStopped(
                     self.t,
-                    "the torque switches again and again without end: its functions took their values at zero more "
-                    f"than {MOST_SWITCHES} times; change the torque, or end the motion at this time",
+                    f"the torque switches again and again without end: more than {MOST_SWITCHES} times, the argument "
+                    "of a function such as sign came to rest exactly where the function switches, or left this value; "
+                    "change the torque, or end the motion at this time",
                     self.end,
                 )
         self.modes = settled
@@ -431,9 +438,9 @@ class ModeChanges(Guards):
                 functions = f"{self._names_of_held()} and {self._name(mode)} at once"
                 raise IntegrationStopped(
                     self.t,
-                    f"the motion would slide along the jumps of {functions}, but not in exactly one way: the "
-                    f"equations do not determine the value of {self._name(mode)}; change the torque, or end the motion "
-                    "at this time",
+                    f"the motion would slide along the jumps of {functions} (the states would stay at these jumps), "
+                    f"which symrot cannot compute: the equations do not determine the value of {self._name(mode)}; "
+                    "change the torque, or end the motion at this time",
                     self.end,
                 )
 

@@ -117,8 +117,7 @@ def _switchings(changes: dict[tuple[float, str], str]) -> list[Switching]:
 class SwitchedRecording(Recording):
     """A function from times to states, made of smooth intervals of a motion.
 
-    If the motion stopped early, the states at times that it did not reach are NaN forward in time, and meaningless
-    numbers backward in time.
+    If the motion stopped early, the states at times that it did not reach are NaN.
     """
 
     def __init__(
@@ -143,7 +142,9 @@ class SwitchedRecording(Recording):
             places[beyond] += 1
         for place in np.unique(places):
             if place == len(self._chunks):
-                states[places == place] = np.nan  # times after the motion stopped early
+                states[places == place] = np.nan  # a motion forward in time stopped early
             else:
                 chosen = places == place
                 states[chosen] = self._chunks[place].states(times[chosen])
+        # a motion backward in time stopped early
+        states[times < min(self._chunks[0].start, self._chunks[0].stop).high] = np.nan

@@ -53,8 +53,9 @@ class RegimeParameters(NamedTuple):
 
     Each of ``rates``, ``guards`` and ``quantities`` takes an epoch, a time of the scene, s, and returns the values of
     parameters (:class:`ShiftedParameters`): of the rates of the states, of the formulas whose zeros end the motion, and
-    of the output quantities. ``invariants`` are numbers that do not depend on the epoch: the parameters of the output
-    quantities for the Taylor stepper, which corrects conserved quantities; two doubles for each.
+    of the output quantities. ``invariants`` has the values with which the Taylor stepper computes conserved quantities,
+    to keep them constant: again the parameters of the output quantities, but independent of the epoch, and each as two
+    doubles whose sum is more exact.
     """
 
     rates: ShiftedParameters
@@ -172,7 +173,9 @@ class Regime:
         return self._bound[place]
 
     def zeros(self, modes: Modes, zero: Instant, y: Floats) -> set[str]:
-        """Return the names of the inputs of the output quantities, states and parameters, whose values are zero now.
+        """Return the names of those states and parameters that are zero now.
+
+        The parameters are those of the program that computes the output quantities from the states.
 
         ``y`` are the present states, ``modes`` the present values of the functions (sign, abs, ..); ``zero`` is the
         instant from which the equations count time.
@@ -189,24 +192,29 @@ class Regime:
         return [float(quantities[name]) for name in names]
 
     def _inputs(self, modes: Modes, zero: Instant, y: Floats) -> dict[str, float]:
-        """Return a map from the names of all inputs of the output quantities to values: states ``y`` and parameters."""
+        """Return a map from names to values of the inputs of the output quantities: the states ``y`` and parameters."""
         numbers = self._parameters_under(modes).quantities.parameters(zero.exact)
         values = zip((name for name, _ in self.quantity_parameters), numbers, strict=True)
         return dict((*values, *zip(self.plan.states, y.tolist(), strict=True)))
 
     def rates_since(self, modes: Modes, zero: Instant) -> Callable[[float], list[float]] | None:
-        """Return a function from an epoch, s after ``zero``, to the values of the parameters of the rates.
+        """Return a function from an epoch to the values of the rates' parameters, or None if no value depends on it.
 
-        With these values, t in the rates is the time since the epoch. The values also depend on ``modes``, the values
-        of the switching functions (sign, abs, ..), which stay fixed. Return None if no parameter depends on the epoch.
+        The rates are the time derivatives of the states. The function takes the epoch, s after the instant ``zero``.
+        With the values that it returns, t in the formulas of the rates is the time since the epoch.
+
+        The values also depend on ``modes``, the values of the switching functions (sign, abs, ..), which stay fixed.
         """
         rates = self._parameters_under(modes).rates
         return None if rates.fixed else lambda since: rates.parameters(zero.exact + Fraction(since))
 
     @cached_property
     def _with_constants(self) -> tuple[Parameters, Parameters, Parameters]:
-        """The parameters of rates, guards and output quantities, as pairs (name, formula) with constants inserted."""
-        # the formulas then contain only the epoch and the modes, values of the switching functions
+        """The parameters of the rates, of the switching functions' arguments and of the output quantities.
+
+        Each parameter is a pair (name, formula); in the formula, the constants of the scene are replaced by their
+        values. It then contains only the epoch and the values of the switching functions.
+        """
         modes = {switch.mode for switch in self.switches}
         known = {name: value for name, value in self.constants.items() if name not in modes}
         kernel = self.motion.kernel
@@ -240,8 +248,11 @@ def _distance(switch: Switch) -> Node:
 
 
 def _with_parameters(program: Program, more: list[str]) -> Program:
-    """Return the program of the output quantities with additional parameters ``more`` at the end of its array p."""
-    # only the search for switches uses them
+    """Return the program that computes the output quantities, with additional parameters.
+
+    A program is a list of formulas, from which C code is printed. The names ``more`` are appended to the components of
+    its argument p, the array of the parameters. Only the search for switches uses them.
+    """
     arguments = list(program.signature.arguments)
     place = next((k for k, argument in enumerate(arguments) if argument.name == "p"), None)
     extra = tuple((name, "", "") for name in more)

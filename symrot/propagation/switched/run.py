@@ -65,7 +65,7 @@ class SwitchedRun(ModeChanges):
     def __init__(self, motion: Motion, system: SwitchedSystem, end: float) -> None:
         super().__init__(motion, system, end)
         self.cost = np.zeros(3, dtype=np.int64)  # steps accepted and rejected, evaluations
-        self.hopped = False
+        self.hopped = False  # whether a short linear motion (_hop) has started at the last switch
 
     def follow(self, consume: Consumer) -> None:
         """Compute the motion to its end, and pass each :class:`Chunk` of it to ``consume`` as soon as it is known."""
@@ -105,8 +105,8 @@ class SwitchedRun(ModeChanges):
                 way = "past" if self.side < 0.0 else "future"
                 raise IntegrationStopped(
                     self.t,
-                    f"the motion starts where {self._name(mode)} switches, and can go on with either of its values: it "
-                    f"has more than one {way}; change the initial state slightly",
+                    f"the motion starts where {self._name(mode)} switches, and can go on with either value of this "
+                    f"function: the motion has more than one {way}; change the initial state slightly",
                     self.end,
                 )
 
@@ -115,9 +115,10 @@ class SwitchedRun(ModeChanges):
 
         A guard is a formula that turns negative where a function (sign, floor, ..) switches. ``regime`` is the smooth
         motion for the present values of these functions; ``consume`` takes each :class:`Chunk` of the computed motion.
-        Return None if the motion reaches its end without a switch. Return None also if the values of functions changed
-        at the time :attr:`t`, or if a short hop led to it: the caller then calls this method again from there, with the
-        smooth motion for the present values.
+        The time at which this method stops is stored in :attr:`t`. Return None if the motion reaches its end without a
+        switch. Return None also if the values of functions changed at the time :attr:`t`, or if the stepper was stuck
+        and one short linear motion (:meth:`_hop`) reached :attr:`t`. The caller then calls this method again, with the
+        smooth motion that starts at :attr:`t` with the present values.
         """
         if self.t != 0.0:
             self._move_clock(self._at(self.t))
@@ -245,8 +246,9 @@ class SwitchedRun(ModeChanges):
     ) -> tuple[Piece, Callable[[Floats], Floats], Guard | None] | None:
         """Return a short linear motion (hop) past the time t at which a stepper is stuck; None if it is not accurate.
 
-        The result is the polynomial of the hop, a function from times to states, and the guard that is zero at the end
-        of the hop. The guard is None if t is 0, the instant of the last switch, from which the hop leads away.
+        The result is the polynomial of the hop, a function from times to states, and a guard: the argument of sign,
+        abs, .. that is zero at the end of the hop. The guard is None if the hop starts at the last switch (t = 0):
+        such a hop ends at no switch.
         """
         # Steps shrink to zero where a torque has no derivative, though its impulse is finite: sqrt(1 - t) before a
         # switch at 1 s, sqrt(t - 1) after it. If the impulse is less than the tolerance, the states may change

@@ -63,20 +63,21 @@ class RunState:
         return Instant(self.motion.start) - self.zero
 
     def note_rounding(self, zero: Instant) -> None:
-        """Store the first time from which rounding errors may matter, if any, in :attr:`rounded_beyond`.
+        """Store in :attr:`rounded_beyond` the time, if any, from which rounding errors may exceed the tolerance.
 
-        The attribute :attr:`rounding` has this time as ``rounding.beyond``, in s after the instant ``zero``. It is
-        stored as a time on the clock of the scene.
+        The sum of the errors, :attr:`rounding`, has this time as ``rounding.beyond``, in s after the instant ``zero``.
+        The stored number is the time of the scene, s. Only the first such time of a motion is stored.
         """
         if not self.rounded_beyond and self.rounding.beyond is not None:
             self.rounded_beyond.append(zero.after(self.rounding.beyond).high)
 
     def clock(self, regime: Regime, stepped: Any) -> Callable[[float], tuple[Any, list[float]]] | None:
-        """Return a function that takes an epoch, s after :attr:`zero`, and returns the pair (``stepped``, parameters).
+        """Return the function that a stepper calls to count time from a new epoch; None if no rate depends on time.
 
-        ``stepped`` computes the rates: a library or a Python function. With these parameters the rates count time from
-        the epoch. Return None if the rates do not depend on time.
+        The epoch is the time at which the stepper sets its clock to 0. The function takes the epoch, s after the
+        instant :attr:`zero`. It returns the pair (``stepped``, values of parameters). ``stepped``, a library or a
+        Python function, computes the rates, and is the same for every epoch; with these values of its parameters, the
+        rates take the time since the epoch.
         """
-        # the epoch is the time at which the stepper sets its clock to 0
         parameters = regime.rates_since(self.modes, self.zero)
         return (lambda since: (stepped, parameters(since))) if parameters else None

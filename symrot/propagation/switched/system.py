@@ -49,11 +49,12 @@ class SwitchedSystem:
 
     @cached_property
     def twins(self) -> dict[str, list[tuple[str, int]]]:
-        """For each sign, abs, ..: the functions of the same torque whose arguments are zero together.
+        """A map from each sign, abs, .. to the functions of the same torque whose arguments are zero together.
 
-        Examples are sign(omega_3) and abs(2*omega_3). The property is a map from the name of a function's mode, the
-        number that replaces the function in formulas, to a list of pairs (mode, 1 or -1), with one pair for the
-        function itself. -1 means that the argument has the opposite sign of the first argument in the list.
+        Examples are sign(omega_3) and abs(2*omega_3). A function is identified by the name of its mode, the number
+        that replaces the function in formulas. A key is such a name. Its value is a list of pairs (name, 1 or -1), one
+        for each of these functions, among them the function of the key. The number is -1 if the argument of the
+        function has the opposite sign of the argument of the first function in the list.
         """
         numbers: dict[str, Node] = {name: ("number", value) for name, value in self.constants.items()}
         for mode in self.switches:
@@ -75,9 +76,8 @@ class SwitchedSystem:
 
         The arguments of the functions ``held`` stay at zero. The result is a map from the name of a function to the
         pair (name of the held function, 1 or -1); -1 means that the arguments of these two functions have opposite
-        signs.
+        signs. Each held function must be the first in its list in :attr:`twins`.
         """
-        # held: the argument of the function stays at zero; a function that switches at the same time follows
         return {twin: (mode, sign) for mode in held for twin, sign in self.twins[mode] if twin != mode}
 
     def matters_at_zero(self, mode: str) -> bool:
@@ -110,9 +110,9 @@ class SwitchedSystem:
     def initial_modes(self) -> Modes:
         """Return the initial values of all switching functions, by name.
 
-        The sign or absolute value of an argument that starts at zero and depends on the state has the sign 1 at first.
+        If the argument of sign or abs depends on the state and is zero at the start, it is treated as positive. The
+        motion determines later whether it becomes positive or negative.
         """
-        # the motion determines later whether sign(0) becomes 1 or -1
         return dict(self._initial_modes[0])
 
     @property
@@ -184,8 +184,8 @@ class SwitchedSystem:
                 for switch in switches:
                     if names(switch.guard) & (held | tied.keys()):
                         raise InputError(
-                            f"torque: the motion slides along the jump of a function inside {switch.label}, and at "
-                            f"that jump {switch.label} has no value; put no function with a jump inside another one"
+                            f"torque: the states stay at the jump of a function inside {switch.label}, and at this "
+                            f"jump {switch.label} has no value; put no function with a jump inside another one"
                         )
                 own = on_own_clock(plan, self.choice, self.tolerance)
                 self._regime_of[content] = Regime(self.constants, self.switches, own, held, switches)
@@ -253,16 +253,15 @@ def _chosen(
 ) -> TorqueStructure:
     """Return a torque in which the branch that applies replaces each ``where(condition, u, v)``.
 
-    ``modes`` has the values of the switching functions (sign, abs, ..). The functions ``held``, whose arguments stay at
-    zero, become unknowns of the equations. ``tied`` maps the functions that switch together with a held one to pairs
-    (held function, 1 or -1): those with jumps become the unknown of the held function or its negative. A torque without
-    formulas is returned unchanged.
+    ``modes`` has the values of the switching functions (sign, abs, ..). The arguments of the functions ``held`` stay at
+    zero: in the result, an unknown replaces each of these functions, and the formulas are linear in the unknowns.
+    ``tied``, a result of :meth:`SwitchedSystem.tied`, has the functions that switch together with a held function. Such
+    a function with a jump is replaced by the unknown of the held function, times 1 or -1. Such a function with a kink,
+    as abs, keeps its value in ``modes``, since both of its values are right at zero. A torque without formulas is
+    returned unchanged.
     """
     if not isinstance(torque, FormulaTorque):
-        # no formulas
         return torque
-    # held functions become unknowns, in which the formulas become linear; tied maps a function to the held function
-    # with which it switches, and to 1, or -1 for its negative
     prefix, names = torque.prefix, torque.parameters
     own = tuple(sorted(name for name in names if prefix + name in held))
     torque = torque._replace(held=own)

@@ -1,9 +1,10 @@
 """Writing of chunks by workers on the machine of the client, so that they need not send the chunks to the client.
 
-The client is the process that runs a sweep and submits its chunks to workers. It lets the workers write into its store
-while it runs. It then keeps in memory a file with a mark, a text that no other client has, and sends the workers an
-*offer*: the path of this file, the mark, and a description of the store. A worker writes only if it finds the mark in
-the file. Otherwise the client is on another machine or has ended, and the worker returns its chunk.
+The client is the process that runs a sweep and submits its chunks to workers. While it runs, the client lets the
+workers write into its store. For this, the client creates an anonymous file (Linux memfd), which vanishes when the
+client ends. The file contains the *mark* of the client, a text that no other client has. The client sends the workers
+an *offer*: the path of this file under /proc, the mark, and a description of the store. A worker writes only if it
+finds the mark in the file. Otherwise the client is on another machine or has ended, and the worker returns its chunk.
 """
 
 import os
@@ -33,7 +34,8 @@ class Written(NamedTuple):
 class Offer(NamedTuple):
     """What a worker needs to write chunks of a sweep into the store of the client, the process that runs the sweep.
 
-    ``file`` is the path of a file in the client's memory, ``mark`` the text in it that no other client has.
+    ``file`` is the path, under /proc, of the anonymous file that the client keeps open while it runs. ``mark`` is the
+    text in this file, which no other client has.
     """
 
     file: str
@@ -82,14 +84,18 @@ def _folder(path: Path) -> tuple[int, int]:
 def _opened(store: bytes, mark: str) -> Any:
     """Return the store that the field ``store`` of an :class:`Offer` describes, or None if its folder is missing.
 
-    The result is cached until an offer of another client, with another ``mark``, comes.
+    The result is cached until this function is called with the field ``mark`` of another client's offer. A client is a
+    process that runs a sweep.
     """
     kind, path, header = pickle.loads(store)
     return kind(path, header) if path.is_dir() else None
 
 
 def _is_valid(offer: Offer) -> bool:
-    """Return whether the client that made an offer, the process that runs the sweep, still runs, on this machine."""
+    """Return whether the client that sent ``offer`` to this worker still runs, and on the same machine as the worker.
+
+    The client is the process that runs the sweep.
+    """
     try:
         return offer.mark.startswith(f"{_machine()} ") and Path(offer.file).read_bytes() == offer.mark.encode()
     except OSError:

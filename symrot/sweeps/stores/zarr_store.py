@@ -1,6 +1,7 @@
 """Results of a sweep as a Zarr group, which xarray opens: one array for each input and output, with its units.
 
-Each array has the same chunks as the sweep. A chunk with a status is complete, even if a process was killed.
+Each array has the same chunks as the sweep. The status of a chunk is written last: a chunk that has a status is
+complete, even if a process was killed while it wrote.
 """
 
 import json
@@ -113,8 +114,8 @@ class ZarrStore:
         Raises
         ------
         InputError
-            If another process has finished this sweep and kept only other statistics, or has begun another sweep in
-            the folder.
+            If another process has finished this sweep and kept nothing but statistics, and these are not the ones that
+            ``only_statistics`` describes. Also if another process has begun another sweep in the folder.
         """
         self._require_own()
         zarr = optional("zarr", "-o")
