@@ -270,8 +270,9 @@ def _require_intended(rates: Program) -> None:
             number = f"{meant.fraction}*pi" if meant.times_pi else str(meant.fraction)
             written = Decimal(node[1].numerator) / node[1].denominator
             raise InputError(
-                f"{rates.signature.name}: expected the constant {number}, got {written}: both round to the same double, "
-                f"and symrot proves the bounds for the simpler number; write {number}, or {written} with fewer digits"
+                f"{rates.signature.name}: expected the constant {number}, got {written}: both round to the same "
+                f"double, and symrot proves the bounds for the simpler number; write {number}, or {written} with "
+                "fewer digits"
             )
 
 
