@@ -2,7 +2,7 @@
 
 Motions under torques with jumps or kinks are followed one by one.
 
-A column consists of the derivatives by one variable. The equations are those of
+A column consists of the derivatives with respect to one variable. The equations are those of
 :mod:`symrot.propagation.sensitivities.variation`. Every constant that varies in the ensemble is a parameter of the
 equations, so the derivatives of a motion do not depend on the other motions.
 """
@@ -139,7 +139,7 @@ def _follow_switched(problem: Problem, keys: Sequence[str]) -> tuple[Sensitiviti
 
 
 def _labelled(variables: Sequence[Variable], omega: Floats, quaternion: Floats, rotation: Floats) -> Sensitivities:
-    """Return arrays of derivatives by ``variables`` with the names and the units of the variables."""
+    """Return derivatives with respect to ``variables``, with the names and the units of the variables."""
     names, units = tuple(variable.name for variable in variables), tuple(variable.unit for variable in variables)
     return Sensitivities(names, units, groups_of(variables), omega, quaternion, rotation)
 
@@ -171,22 +171,23 @@ def _require_shared(column: Column, varying: Collection[str]) -> None:
     moved |= {"quaternion"} if any(column.start[RATES:]) else set()
     own = sorted(moved.intersection(varying))
     if own:
+        keys = [ATTITUDE if name == "quaternion" else name for name in own]
         raise InputError(
-            "sensitivities: expected a variable that sets only constants shared by all motions, but "
-            f"{variable.name} sets {', '.join(own)}, whose values differ between the motions; "
-            f"name {' or '.join(own)} itself as a variable"
+            f"sensitivities: expected a variable that changes only numbers that all motions share, but {variable.name} "
+            f"changes {', '.join(own)}, whose values differ between the motions; name {' or '.join(keys)} as the "
+            "variable instead"
         )
 
 
 def _constant(variable: Variable) -> str:
-    """Return the name of the constant that ``variable`` sets: ``weight``, or ``I_yy`` for ``principal_2``."""
-    # for a variable that sets several constants, such as a mass, no constant has this name
+    """Return the name of the constant that ``variable`` changes: ``weight``, or ``I_yy`` for ``principal_2``."""
+    # for a variable that changes several constants, such as a mass, no constant has this name
     stem, _, number = variable.name.rpartition("_")
     return f"I_{2 * 'xyz'[int(number) - 1]}" if stem == "principal" else variable.name
 
 
 class _Equations:
-    """The compiled equations of n motions and of their derivatives by k variables, with the constants of each motion.
+    """The compiled equations of n motions and of their derivatives with respect to k variables.
 
     Parameters
     ----------
@@ -269,7 +270,7 @@ class _Equations:
         return grid[..., :SIZE], slopes_of.transpose(0, 1, 3, 2), reasons
 
     def _start(self, rows: lanes.Integers) -> Floats:
-        """Return the initial states of the motions ``rows`` and their derivatives by k variables, (n, 7, 1 + k)."""
+        """Return the initial states of the motions ``rows`` and their derivatives with respect to k variables."""
         # 7: angular velocity and quaternion; the states come first on the last axis
         states = self.problem.variation.initial_states[rows]
         start = np.empty((len(rows), SIZE, 1 + len(self.columns)))
@@ -281,7 +282,7 @@ class _Equations:
         return start
 
     def _units(self, rows: lanes.Integers) -> Floats:
-        """Return the factors by which the derivatives by k variables are multiplied while integrated, shape (n, k)."""
+        """Return the factors that multiply the k derivatives of n motions during the integration, shape (n, k)."""
         # powers of two
         variation, units = self.problem.variation, np.ones((len(rows), len(self.columns)))
         for k, column in enumerate(self.columns):
@@ -301,7 +302,7 @@ class _Equations:
     def _integrate(self, p: Floats, y: Floats, times: Floats) -> tuple[Floats, Sequence[str]]:
         """Return samples of n motions at m times, and for each motion why it stopped early, or an empty text.
 
-        A sample has the 7 states and their derivatives by k variables: the shape is (n, m, 7 (1 + k)).
+        A sample has the 7 states and their derivatives with respect to k variables: the shape is (n, m, 7 (1 + k)).
         """
         problem = self.problem
         if isinstance(self.compiled, Path):
