@@ -179,9 +179,9 @@ def test_statistics_are_those_of_all_values(whole):
         ({"count": 1e9}, "path: expected a file to write"),
         ({"vary": [1]}, "vary: expected a dict"),
         ({"vary": {3: "normal(0, 1)"}}, "vary: expected the name of a value, such as 'omega_1', got 3"),
-        ({"outputs": 3}, "outputs: expected a text or a list of texts, got 3"),
+        ({"outputs": 3}, "outputs: expected a string or a list of strings, got 3"),
         ({"outputs": [3]}, "output: expected a text such as 'omega_1@end', got 3"),
-        ({"statistics": 3}, "statistics: expected a text or a list of texts, got 3"),
+        ({"statistics": 3}, "statistics: expected a string or a list of strings, got 3"),
     ],
 )
 def test_an_argument_that_cannot_be_used_is_one_sentence(options, message):
