@@ -226,7 +226,10 @@ def _cross_along_a_line(surface: Surface, i: NDArray[np.int64], j: NDArray[np.in
     # Source: Guigue & Devillers, J. Graphics Tools 8 (2003) 25: each end of an interval is on an edge that leaves the
     # corner alone on its side of the other plane, and four corners tell which of two ends comes first on the line.
     pairs = surface.triangles[i], surface.triangles[j]
-    sides = [np.stack([_sides(surface, *o.T, x) for x in own.T], axis=1) for own, o in (pairs, pairs[::-1])]
+    sides = [
+        np.stack([_sides(surface, o[:, 0], o[:, 1], o[:, 2], x) for x in own.T], axis=1)
+        for own, o in (pairs, pairs[::-1])
+    ]
     split = np.flatnonzero(np.logical_and(*((each.min(axis=1) < 0) & (each.max(axis=1) > 0) for each in sides)))
     corners, above = [], []
     for own, each in zip(pairs, sides, strict=True):

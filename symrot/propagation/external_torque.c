@@ -46,10 +46,12 @@ static inline void symrot_driven(double t, const double *y, const double *p, dou
 {
     symrot_torque function;
     void *user;
-    double torque[3] = {0.0, 0.0, 0.0};
     memcpy(&function, p + SYMROT_FUNCTION, sizeof function);
     memcpy(&user, p + SYMROT_USER, sizeof user);
     symrot_rates(t, y, p, dy);
+    /* A C function may leave components zero; a function in Python, which has `user`, fails if it writes nothing. */
+    double torque[3] = {0.0, 0.0, 0.0};
+    if (user != NULL) torque[0] = torque[1] = torque[2] = NAN;
     if (function(t, y, y + 3, torque, user)) torque[0] = torque[1] = torque[2] = NAN;
     if (p[SYMROT_IN_SPACE] != 0.0) {  /* v_b = v + 2 q0 (v x u) + 2 (v x u) x u, u the vector part */
         const double *u = y + 4, *v = torque;

@@ -10,11 +10,13 @@ import math
 import pickle
 import sys
 from abc import ABC, abstractmethod
-from collections.abc import Callable, Sequence
+from collections.abc import Callable, Iterator, Sequence
+from contextlib import AbstractContextManager, contextmanager, nullcontext
 from dataclasses import dataclass, replace
 from functools import cached_property
 from pathlib import Path
-from typing import Any, ClassVar, TypeVar, final
+from threading import local
+from typing import Any, ClassVar, final
 
 import numpy as np
 from numpy.typing import ArrayLike, NDArray
@@ -41,7 +43,6 @@ from symrot.scene.tables import Initial
 __all__ = ["ExternallyDrivenPropagator"]
 
 Floats = NDArray[np.float64]
-Result = TypeVar("Result")
 CALLBACK = ctypes.CFUNCTYPE(
     ctypes.c_int, ctypes.c_double, ctypes.POINTER(ctypes.c_double), ctypes.POINTER(ctypes.c_double),
     ctypes.POINTER(ctypes.c_double), ctypes.c_void_p,
@@ -91,6 +92,10 @@ class TorqueSource(ABC):
     def failure(self) -> BaseException | None:
         """Return the error of the torque function during the last motion, or None."""
 
+    def watched(self) -> AbstractContextManager[None]:
+        """Return the context in which a motion is followed and :meth:`failure` returns the errors of this motion."""
+        return nullcontext()
+
 
 @final
 class _Function(TorqueSource):
@@ -98,7 +103,8 @@ class _Function(TorqueSource):
 
     def __init__(self, function: Callable[[float, Floats, Floats], ArrayLike]) -> None:
         self.function = function
-        self.error: BaseException | None = None
+        self.user = np.zeros(1)  # not null: if ctypes drops an exception, C finds a torque that is not a number
+        self._errors = local()  # of this thread: another one may follow a motion with the same function
         self.pointer = CALLBACK(self._call)
 
     def __reduce__(self) -> tuple[Any, ...]:
@@ -117,43 +123,72 @@ class _Function(TorqueSource):
         return _Function(copy.deepcopy(self.function, memo))
 
     def _call(self, t: float, omega: Any, quaternion: Any, torque: Any, user: Any) -> int:
-        if self.error is not None:
-            return 1
+        # outside of the try block, ctypes would drop an interrupt
         try:
-            values = np.asarray(self.function(t, np.array(omega[:3]), np.array(quaternion[:4])), dtype=np.float64)
-            if values.shape != (3,) or not np.isfinite(values).all():
-                # ends the motion with an error, as does an exception of the function
-                raise InputError(
-                    f"torque: expected three finite numbers in N m, got {number.show(values.tolist())} at t = {t!r} s"
-                )
-            torque[0], torque[1], torque[2] = values.tolist()
-        except InputError as error:
-            self.error = error
-        except Exception as error:
-            self.error = InputError(f"torque: the function raised {type(error).__name__}: {error}, at t = {t!r} s")
-            self.error.__cause__ = error
-        except BaseException as error:  # an interrupt is raised again unchanged
-            self.error = error
-        return int(self.error is not None)
+            if self.failure() is not None:
+                return 1
+            result = self.function(t, np.array(omega[:3]), np.array(quaternion[:4]))
+            try:
+                torque[0], torque[1], torque[2] = _three_numbers(result)
+            except InputError as error:  # ends the motion, as does an exception of the function
+                self._errors.last = InputError(f"{error} at t = {t!r} s")
+                return 1
+            return 0
+        except BaseException as error:
+            self._errors.last = _explained(error, t)
+            return 1
 
     def pointer_in(self, library: Path) -> Any:
         """Return the callback through which C calls the Python function."""
         return self.pointer
 
     def check(self, low: float, high: float) -> None:
-        """Clear the error that the function raised in an earlier motion.
-
-        The times ``low`` and ``high`` are not checked, because the domain of the function is not known.
-        """
-        # failure() reports only exceptions from here on
-        self.error = None
+        """Do nothing: the domain of the function is not known, so that no time can be refused."""
 
     def failure(self) -> BaseException | None:
-        """Return the error of the function in the last motion, or None if there was none.
+        """Return the error of the function in this thread's last motion, or None if there was none.
 
         A result that is not three finite numbers is an error, too.
         """
-        return self.error
+        error: BaseException | None = getattr(self._errors, "last", None)
+        return error
+
+    @contextmanager
+    def watched(self) -> Iterator[None]:
+        """Follow a motion in the ``with`` block; afterwards :meth:`failure` returns what it returned before."""
+        # the function itself may follow a motion, even its own
+        before, self._errors.last = self.failure(), None
+        try:
+            yield
+        finally:
+            self._errors.last = before
+
+
+def _three_numbers(result: Any) -> list[float]:
+    """Return the three finite numbers that a torque function returned; raise InputError if they are not."""
+    values = np.asarray(result)
+    if values.dtype != np.float64:
+        values = real_array(result, "torque", "three finite numbers in N m")
+    if values.shape != (3,) or not np.isfinite(values).all():
+        raise InputError(f"torque: expected three finite numbers in N m, got {number.show(values.tolist())}")
+    numbers: list[float] = values.tolist()
+    return numbers
+
+
+def _explained(error: BaseException, t: float) -> BaseException:
+    """Return the error to raise if a torque function raised ``error`` at the time ``t``, s.
+
+    It is an InputError, except that an interrupt or another exception that is no error is returned unchanged.
+    """
+    if not isinstance(error, Exception):
+        return error
+    try:
+        sentence = str(error)
+    except Exception:
+        sentence = "an error without a text"
+    explained = InputError(f"torque: the function raised {type(error).__name__}: {sentence}, at t = {t!r} s")
+    explained.__cause__ = error
+    return explained
 
 
 @final
@@ -268,6 +303,23 @@ def _bends(spline: Any) -> list[float]:
     return bends
 
 
+def _check_declaration(function: Any) -> None:
+    """Raise InputError if a C function is a null pointer or is declared to ctypes with a signature that C cannot call.
+
+    A function of a loaded library without ``argtypes`` is accepted: ctypes does not know its arguments.
+    """
+    declared = function.argtypes
+    if not _address(function):
+        raise InputError("torque: expected a C function, got a null pointer")
+    if (declared is not None and len(declared) != 5) or function.restype is not ctypes.c_int:
+        takes = "any arguments" if declared is None else f"{len(declared)} argument{'s' * (len(declared) != 1)}"
+        returns = "nothing" if function.restype is None else getattr(function.restype, "__name__", "another type")
+        raise InputError(
+            "torque: expected a C function int (double t, const double omega[3], const double quaternion[4], double "
+            f"torque[3], void *user), got one that ctypes declares to take {takes} and to return {returns}"
+        )
+
+
 def _torque_source(torque: Any, switching: Sequence[float]) -> TorqueSource:
     """Return a torque, in any form that :func:`symrot.propagator` accepts, as a :class:`TorqueSource`.
 
@@ -275,6 +327,7 @@ def _torque_source(torque: Any, switching: Sequence[float]) -> TorqueSource:
     times.
     """
     if isinstance(torque, ctypes._CFuncPtr):  # type: ignore[attr-defined]
+        _check_declaration(torque)
         return _CFunction(torque)
     if callable(torque):
         return _Function(torque)
@@ -390,19 +443,27 @@ class ExternallyDrivenMotion(RestartableMotion, SteppedInC):
             self.tolerance, max_step=shared.longest_step, max_steps=shared.source.most_steps, breaks=shared.breaks,
         )  # fmt: skip
 
-    def _guarded(self, low: float, high: float, run: Callable[[], Result]) -> Result:
-        """Return the result of ``run()``, after a check that the torque is defined from ``low`` to ``high``, s.
+    @contextmanager
+    def following(self, times: Floats) -> Iterator[None]:
+        """Follow the motion from the start to ``times``, s, in the ``with`` block.
 
-        If the motion stops because the torque function raised an error, raise this error.
+        Raise InputError if the torque is not defined there. If the motion stops because the torque function raised an
+        error, raise this error.
         """
+        low, high = (float(times.min()), float(times.max())) if len(times) else (self.start, self.start)
         source = self._shared.source
         source.check(min(low, self.start), max(high, self.start))
-        try:
-            return run()
-        except PropagationError:
-            failure = source.failure()
-            if failure is None:
+        with source.watched():
+            try:
+                yield
+            except PropagationError:
+                self.raise_torque_error()
                 raise
+
+    def raise_torque_error(self) -> None:
+        """Raise the error that the torque function raised since :meth:`following`; do nothing if there is none."""
+        failure = self._shared.source.failure()
+        if failure is not None:
             raise failure from failure.__cause__
 
     def follow(self, times: Floats, in_order: bool = False) -> tuple[Floats, Stats]:
@@ -410,16 +471,17 @@ class ExternallyDrivenMotion(RestartableMotion, SteppedInC):
 
         ``in_order`` has no effect: the times are sorted in any case.
         """
-        low, high = (float(times.min()), float(times.max())) if len(times) else (self.start, self.start)
         # sample() sorts the times, so that in_order is not used
-        return self._guarded(low, high, lambda: self.stepping.restarted().sample(times))
+        with self.following(times):
+            return self.stepping.restarted().sample(times)
 
     def dense(self, span: tuple[float, float]) -> Recording:
         """Return a function that takes n times within ``span``, s, and returns the N states, shape (n, N).
 
         It evaluates recorded steps.
         """
-        return self._guarded(*span, lambda: self.stepping.restarted().record(span))
+        with self.following(np.array(span)):
+            return self.stepping.restarted().record(span)
 
 
 class ExternallyDrivenPropagator(Propagator):

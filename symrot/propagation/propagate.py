@@ -63,9 +63,9 @@ def propagator(
     torque : optional
         An additional torque, N m, without a formula: a function of (t, omega, quaternion) that returns three numbers;
         a C function of ctypes, ``int (double t, const double omega[3], const double quaternion[4], double torque[3],
-        void *user)``, which returns 0 and is called with a null pointer as ``user``; or a table (times, samples of
-        shape (n, 3)), which is interpolated by cubic splines between the switching times. The method is then
-        ``dop853``.
+        void *user)``, which writes the components that are not zero, returns 0 and is called with a null pointer as
+        ``user``; or a table (times, samples of shape (n, 3)), which is interpolated by cubic splines between the
+        switching times. The method is then ``dop853``.
     switching_times : array, optional
         Times, s, at which the additional torque jumps: a step ends exactly there, and the integration restarts. A
         function is called just before and just after each of these times; a table has two samples there, before and

@@ -167,9 +167,19 @@ def draw_curves(axes: Any, t: Floats, curves: Sequence[Floats], names: Sequence[
             axes.plot(t, part, color=colour, linewidth=width, label=label, linestyle=dashes if is_hidden else "-",
                       dash_capstyle="butt")  # fmt: skip
             label = f"_{name}"  # an underscore keeps the second part out of the legend
+        lonely = _lonely(curve)
+        if lonely.any():
+            axes.plot(t[lonely], curve[lonely], ".", color=colour, label=f"_{name}")
     if any(fast):
         axes.plot([], [], " ", label=BAND_NOTE)
     axes.grid(True)
+
+
+def _lonely(values: Floats) -> Mask:
+    """Return a mask of the values of a curve without a neighbour that is finite; no line shows them."""
+    known = np.pad(np.isfinite(values), 1)
+    lonely: Mask = known[1:-1] & ~known[:-2] & ~known[2:]
+    return lonely
 
 
 def _is_band(t: Floats, curve: Floats, size: tuple[float, float], height: float) -> bool:

@@ -261,8 +261,9 @@ def plot(trajectory: "Trajectory", ax: Any = None, panel: str = "rates") -> Any:
     ----------
     trajectory : Trajectory
         The motion. The panel draws its dense solution between its first and its last sample. A motion that belongs to
-        an ensemble, or was read from a file, has no dense solution: the panel then joins its samples by lines. A motion
-        of an ensemble has no panel ``"drift"``, and a motion that was read from a file has only the panel ``"rates"``.
+        an ensemble, or was read from a file, has no dense solution: the panel then joins its samples by lines; samples
+        on a sphere that are far apart stay points. A motion of an ensemble has no panel ``"drift"``, and a motion that
+        was read from a file has only the panel ``"rates"``.
     ax : matplotlib Axes, optional
         The axes to draw into; default: axes of a new figure of ``matplotlib.pyplot``.
     panel : str
@@ -340,7 +341,8 @@ def figure(trajectory: Any) -> Any:
     for row, name in enumerate(names):
         panel = page.add_subplot(left[row])
         OVER_TIME[name](panel, t, trajectory)
-        panel.set_xlim(t[0], t[-1])
+        if t[0] != t[-1]:
+            panel.set_xlim(t[0], t[-1])
         panel.set_xlabel(f"t ({unit})", labelpad=1)
     for row, name in enumerate(paths):
         ON_SPHERES[name](page.add_subplot(right[row]), trajectory)

@@ -25,6 +25,7 @@ MOST_VECTORS = 6000  # largest number of segments drawn as vectors in a PDF or S
 SHADES = 240  # colours along a path
 LONGEST = 0.5  # radii: farther samples of a path are not joined, for a chord would show nothing
 MOST_GAPS = 0.01  # fraction of the samples: with more gaps, a path is drawn as points without lines
+FEW = 1000  # points: those of a path with fewer are drawn larger
 CLOSE = 0.75  # radii: a path that extends less from its middle, seen from above, is drawn enlarged
 MARGIN = 1.2  # width of an enlarged drawing, relative to the path's
 GRIDS = (30.0, 15.0, 10.0, 5.0)  # degrees between grid lines
@@ -200,7 +201,7 @@ def _path(
             lines.set_rasterized(many)
             axes.add_collection(lines)
     else:
-        axes.scatter(*points.T, s=0.5, c=colours, linewidths=0.0, zorder=6, rasterized=many)
+        axes.scatter(*points.T, s=0.5 if count > FEW else 9.0, c=colours, linewidths=0.0, zorder=6, rasterized=many)
     for place, marker, name in ((0, "o", "start"), (-1, "s", "end")):
         axes.plot(*points[place], marker, markersize=5, markerfacecolor=strong[place], markeredgecolor="white",
                   markeredgewidth=0.8, zorder=8, label=name)  # fmt: skip

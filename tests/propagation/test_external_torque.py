@@ -4,6 +4,8 @@ import ctypes
 import math
 import re
 import subprocess
+import threading
+from concurrent.futures import ThreadPoolExecutor
 
 import numpy as np
 import pytest
@@ -197,13 +199,104 @@ def test_what_the_function_raises_comes_out():
         symrot.propagator(scene(), torque=interrupted)()
 
 
+def failing(after, error):
+    """Return a torque function that raises an error from a time on."""
+
+    def torque(t, omega, quaternion):
+        if t > after:
+            raise error
+        return (0, 0, 0.25)
+
+    return torque
+
+
+@pytest.mark.parametrize(
+    ("error", "raised", "words"),
+    [(KeyError("no thrust"), InputError, "the function raised KeyError: 'no thrust', at t = "),
+     (KeyboardInterrupt(), KeyboardInterrupt, "^$")],
+)  # fmt: skip
+def test_what_the_function_raises_comes_out_of_a_search_for_events(error, raised, words):
+    """The search ended with "its rate of change is not finite there", also for Ctrl-C."""
+    propagator = symrot.propagator(scene(), torque=failing(1, error))
+    for _ in range(2):
+        with pytest.raises(raised, match=words):
+            propagator(events=["omega_3 - 2"])
+    assert propagator([0.5], events=["omega_3 - 1/16"]).t_events[0] == pytest.approx([0.25], abs=1e-12)
+
+
+def test_a_table_ends_also_for_a_search_of_events():
+    """The last cubic was continued beyond the last sample in silence."""
+    table = ([0, 1, 2], [[0, 0, 1], [0, 0, 2], [0, 0, 3]])
+    with pytest.raises(InputError, match=r"expected times from 0.0 to 2.0 s, the span of the table, got 3.0 s"):
+        symrot.propagate(scene(), torque=table, events=["omega_3 - 10"])
+    with pytest.raises(InputError, match=r"got -1.0 s"):
+        symrot.propagate(scene(), torque=table, t=[-1, 1], events=["omega_3 - 10"])
+    found = symrot.propagate(scene(), torque=table, t=[0, 2], events=["omega_3 - 3/2"])
+    assert found.t_events[0] == pytest.approx([1])
+
+
+def test_each_motion_has_its_own_error():
+    """An error of a motion within the function, or in another thread, ended motions in which the function works."""
+    within, refused = [False], []
+
+    def torque(t, omega, quaternion):
+        if within[0]:
+            raise ValueError("not here")
+        if t > 1 and not refused:
+            within[0] = True
+            try:
+                propagator([0.5])
+            except InputError as error:
+                refused.append(str(error))
+            within[0] = False
+        return (0, 0, 0.25)
+
+    propagator = symrot.propagator(scene(), torque=torque, tolerance=1e-12)
+    assert abs(propagator([2]).omega[0, 2] - 0.5) < 1e-13
+    assert refused == ["torque: the function raised ValueError: not here, at t = 0.0 s"]
+
+    meeting, own = threading.Barrier(2), threading.local()
+
+    def shared(t, omega, quaternion):
+        if not hasattr(own, "met"):
+            own.met = meeting.wait(60)
+        if own.fails and t > 0.5:
+            raise ValueError("in this thread")
+        return (0, 0, 0.25)
+
+    together = symrot.propagator(scene(), torque=shared, tolerance=1e-12)
+
+    def follow(fails):
+        own.fails = fails
+        try:
+            return together([2]).omega[0, 2]
+        except InputError as error:
+            return str(error)
+
+    with ThreadPoolExecutor(2) as pool:
+        ended, followed = pool.map(follow, (True, False))
+    assert "in this thread" in ended and abs(followed - 0.5) < 1e-13
+
+
+def test_a_function_in_python_without_a_result_has_no_torque(monkeypatch):
+    """ctypes drops an exception outside of the function's try block, and then returns any number; zero says success."""
+    monkeypatch.setattr(driven._Function, "_call", lambda *_: 0)
+    with pytest.raises(PropagationError, match="its rate of change is not finite there"):
+        symrot.propagate(scene(), torque=square_wave, t=[0, 2])
+
+
 @pytest.mark.parametrize(
     "torque, words",
     [
         (lambda t, w, q: [1, 2], r"three finite numbers in N m, got \[1.0, 2.0\] at t = 0.0 s"),
         (lambda t, w, q: [1, 2, math.nan], "three finite numbers in N m"),
         (lambda t, w, q: None, "three finite numbers in N m"),
-        (lambda t, w, q: "push", "the function raised ValueError"),
+        (lambda t, w, q: "push", "three finite numbers in N m, got an array of type <U4"),
+        (lambda t, w, q: ["1", "2", "3"], "three finite numbers in N m, got an array of type <U1"),
+        (lambda t, w, q: np.array([0, 1j, 0]), "three finite numbers in N m, got an array of type complex128"),
+        (lambda t, w, q: [10**400, 0, 0], "three finite numbers in N m, got .* at t = 0.0 s"),
+        (driven.CALLBACK(), "a C function, got a null pointer"),
+        (ctypes.CFUNCTYPE(ctypes.c_double, ctypes.c_double)(float), "declares to take 1 argument and to return c_double"),
         (3, "expected a function of"),
         (([0, 1], [[1, 2, 3]]), r"samples in N m of shape \(n, 3\)"),
         (([0, 1], [[1, 2, 3], [1, 2, math.inf]]), "finite numbers"),

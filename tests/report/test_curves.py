@@ -101,3 +101,21 @@ def test_an_unknown_curve_keeps_its_name_in_the_legend():
     draw_curves(axes, np.arange(4.0), [np.full(4, np.nan)], ["energy (no change)"])
     assert axes.get_legend_handles_labels()[1] == ["energy (no change)"]
     assert size_in_pixels(axes) == (900, 450)
+
+
+@pytest.mark.parametrize("curve", [[3.0], [1.0, np.nan, 2.0], [np.nan, 5.0, np.nan, 1.0, 2.0]], ids=str)
+def test_every_value_is_visible_on_a_line_or_as_a_point(curve):
+    axes, values = panel(), np.array(curve)
+    draw_curves(axes, np.arange(float(len(values))), [values], ["omega"])
+    shown = set()
+    for line in axes.lines:
+        known = np.flatnonzero(np.isfinite(line.get_ydata()))
+        x, y = line.get_xdata()[known], line.get_ydata()[known]
+        joined = {place for place in known if place - 1 in known or place + 1 in known}
+        shown |= {
+            (float(a), float(b))
+            for place, a, b in zip(known, x, y, strict=True)
+            if place in joined or line.get_marker() == "."
+        }
+    assert shown == {(float(place), value) for place, value in enumerate(curve) if np.isfinite(value)}
+    assert axes.get_legend_handles_labels()[1] == ["omega"]

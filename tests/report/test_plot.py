@@ -82,6 +82,15 @@ def test_plain_motions_can_be_drawn(tmp_path, capsys, recwarn, body, omega, quan
     assert not [str(warning.message) for warning in recwarn]
 
 
+def test_a_motion_with_one_sample_can_be_drawn(tmp_path, recwarn):
+    """A motion that stops before its second sample."""
+    motion = symrot.propagate("tumbling_prism", t=[0])
+    plot.save(motion, tmp_path / "page.png")
+    assert not [str(warning.message) for warning in recwarn]
+    points = [line for line in symrot.plot(motion, Figure().add_subplot()).lines if line.get_marker() == "."]
+    assert [line.get_ydata().tolist() for line in points] == [[value] for value in motion.omega[0]]
+
+
 def test_no_window_and_no_global_figure(tmp_path, capsys):
     assert cli.main(["run", "tumbling_prism", "--plot", str(tmp_path / "page.png")]) == 0
     assert "matplotlib.pyplot" not in sys.modules or not sys.modules["matplotlib.pyplot"].get_fignums()

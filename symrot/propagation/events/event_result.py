@@ -122,34 +122,36 @@ def integrate_with_events(motion: Motion, times: Floats, events: Sequence[Event]
     doubts, errors = list[tuple[int, float]](), list[PropagationError]()
     flat, rounded = list[tuple[int, float, float]](), list[float]()
     accuracy = EXACT_ERROR if isinstance(motion, ClosedFormMotion) else TOLERANCES * motion.tolerance
-    for part in split_at(times, motion.start):
-        end = float(times[part[-1]])
-        try:
-            side = _side(motion, end)
-        except IntegrationStopped as early:
-            raise (early.later(zero) if zero else early) from None
-        result, early_end = _searched(path, events, p, side, motion.start, end, accuracy)
-        listed, stop = result.zeros, result.stop
-        ended |= stop is not None
-        reached = abs((end if stop is None else stop) - motion.start)
-        if early_end is not None:
-            errors.append(early_end.later(zero) if zero else early_end)
-            reached = abs(early_end.t - motion.start)
-        inside = part[np.abs(times[part] - motion.start) <= reached]
-        known[inside] = True
-        states[inside] = side.states(times[inside])
-        rows = side.states(np.array([each.t for each in listed]))
-        if stop is not None and times[inside[-1:]].tolist() != [stop]:
-            last = part[len(inside)]  # the sample at the event replaces the first sample beyond it
-            known[last], sample_times[last], states[last] = True, stop + zero, rows[-1]
-        zeros = _joined(zeros, list(zip(listed, rows, strict=True)), motion.start)
-        doubts += [(event, t + zero) for event, t in result.doubts]
-        flat += [(event, first + zero, last + zero) for event, first, last in result.flat]
-        side.pieces.close()
-        stats = side.stats()
-        counts += stats[:3]
-        switchings += [each for each in stats.switchings if abs(each.t - motion.start) <= reached]
-        rounded += [t for t in stats.later(zero).rounded_beyond if abs(t - zero - motion.start) <= reached]
+    with motion.following(times):
+        for part in split_at(times, motion.start):
+            end = float(times[part[-1]])
+            try:
+                side = _side(motion, end)
+            except IntegrationStopped as early:
+                raise (early.later(zero) if zero else early) from None
+            result, early_end = _searched(path, events, p, side, motion.start, end, accuracy)
+            listed, stop = result.zeros, result.stop
+            ended |= stop is not None
+            reached = abs((end if stop is None else stop) - motion.start)
+            if early_end is not None:
+                motion.raise_torque_error()
+                errors.append(early_end.later(zero) if zero else early_end)
+                reached = abs(early_end.t - motion.start)
+            inside = part[np.abs(times[part] - motion.start) <= reached]
+            known[inside] = True
+            states[inside] = side.states(times[inside])
+            rows = side.states(np.array([each.t for each in listed]))
+            if stop is not None and times[inside[-1:]].tolist() != [stop]:
+                last = part[len(inside)]  # the sample at the event replaces the first sample beyond it
+                known[last], sample_times[last], states[last] = True, stop + zero, rows[-1]
+            zeros = _joined(zeros, list(zip(listed, rows, strict=True)), motion.start)
+            doubts += [(event, t + zero) for event, t in result.doubts]
+            flat += [(event, first + zero, last + zero) for event, first, last in result.flat]
+            side.pieces.close()
+            stats = side.stats()
+            counts += stats[:3]
+            switchings += [each for each in stats.switchings if abs(each.t - motion.start) <= reached]
+            rounded += [t for t in stats.later(zero).rounded_beyond if abs(t - zero - motion.start) <= reached]
     zeros.sort(key=lambda each: each[0].t)
     own = [[each for each in zeros if each[0].event == number] for number in range(len(events))]
     return EventResult(

@@ -3,6 +3,7 @@
 import math
 from abc import ABC, abstractmethod
 from collections.abc import Callable, Sequence
+from contextlib import AbstractContextManager, nullcontext
 from functools import cached_property
 from typing import Any
 
@@ -144,6 +145,16 @@ class Motion(ABC):
 
         Times and span are counted from :attr:`epoch`.
         """
+
+    def following(self, times: Floats) -> AbstractContextManager[None]:
+        """Return the context in which another module follows the motion, by its steps, from the start to ``times``, s.
+
+        A torque without a formula is checked there: its domain, and the errors that it raises.
+        """
+        return nullcontext()
+
+    def raise_torque_error(self) -> None:  # noqa: B027
+        """Raise the error that a torque function raised since :meth:`following`; do nothing if there is none."""
 
     def integrate(self, times: Floats, in_order: bool = False) -> tuple[Floats, Stats]:
         """Return the N states at n times of the scene, s, as one array, shape (n, N), and the steps and evaluations."""
