@@ -216,7 +216,7 @@ def test_outputs_that_are_derivatives_are_those_of_an_ensemble():
     [
         ("heavy_top_loops", "omega_1_by_wieght", "did you mean 'weight'"),
         ("heavy_top_loops", "omeg_1_by_weight", "did you mean 'omega_1'"),
-        ("heavy_top_loops", "omega_1_by_body.mass@end", "body.mass sets I_xx"),
+        ("heavy_top_loops", "omega_1_by_body.mass@end", "body.mass changes I_xx"),
     ],
 )
 def test_a_derivative_that_does_not_exist_is_refused_before_the_sweep(scene, output, message):
