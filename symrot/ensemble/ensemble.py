@@ -107,7 +107,7 @@ class EnsembleMember(MotionSamples):
 
     @property
     def sensitivities(self) -> Sensitivities | None:
-        """The derivatives of this motion by k variables, arrays of shape (m, ..., k); None if none were requested."""
+        """The derivatives of this motion with respect to k variables, as arrays (m, ..., k); None if not requested."""
         every = self._ensemble.sensitivities
         return None if every is None else every.of(self._number)
 
@@ -149,8 +149,8 @@ class Ensemble(MotionSamples):
     tolerance : float
         Tolerance with which the motions were computed.
     sensitivities : Sensitivities or None
-        Derivatives of the motions by k variables (initial values and constants), if they were requested. The arrays
-        have the variables on their last axis: the derivatives of ``omega`` and ``quaternion`` have the shapes
+        Derivatives of the motions with respect to k initial values and constants, if they were requested. The arrays
+        have these variables on their last axis: the derivatives of ``omega`` and ``quaternion`` have the shapes
         (n, m, 3, k) and (n, m, 4, k); those of the rotation vector of the attitude, in the body, have (n, m, 3, k).
 
     Examples
@@ -358,10 +358,10 @@ def propagate_ensemble(
     workers : int
         Number of threads that compute motions.
     sensitivities : sequence of str, optional
-        Initial values and constants by which all motions are differentiated: ``"omega"``, ``"attitude"``, and numbers
-        of the scene such as ``"weight"``, as for :func:`symrot.propagate`. The derivatives are in the attribute
-        ``sensitivities`` of the ensemble and are computed by Taylor series for every method. If this computation stops
-        before the last time for a motion, the motion stops there too.
+        Initial values and constants with respect to which all motions are differentiated: ``"omega"``, ``"attitude"``,
+        and numbers of the scene such as ``"weight"``, as for :func:`symrot.propagate`. The derivatives are in the
+        attribute ``sensitivities`` of the ensemble and are computed by Taylor series for every method. If this
+        computation stops before the last time for a motion, the motion stops there too.
 
     Returns
     -------
@@ -385,7 +385,8 @@ def propagate_ensemble(
     ``auto`` uses the closed form of each motion that has one; the samples then have the same bits as those of
     :func:`symrot.propagate`. For other motions, and where numeric integration is known to be faster
     (:func:`symrot.ensemble.exact.choose`), it uses Taylor series with one trajectory in each SIMD lane. Motions are
-    computed one by one if a torque jumps, bends or has no Taylor series, or is a formula that may have a short pulse. A
+    computed one by one if a torque has jumps, kinks or no Taylor series, or if a torque formula has degree 3 or more in
+    time and states or may have a short pulse (a large value for so short a time that a long step would miss it). A
     motion that reaches rest under quadratic damping has no Taylor series there and is computed by DOP853.
 
     Examples
