@@ -91,9 +91,10 @@ def _expression(node: Node) -> Expr:
 
 
 def _derivative_laws(equations: Equations, outputs: Sequence[str]) -> tuple[Law, ...]:
-    """Return a tuple with one law: each output such as ``domega_1_by_A`` is the derivative of ``domega_1`` by ``A``.
+    """Return a tuple with the law that each output such as ``domega_1_by_A`` is the derivative that its name says.
 
-    The tuple is empty if no output is a derivative.
+    This output is the derivative of the rate ``domega_1`` with respect to ``A``. The tuple is empty if no output is a
+    derivative.
     """
     rates = {f"d{state}": rate for state, rate in zip(equations.states, equations.explicit_rates, strict=True)}
     vanishing = []

@@ -64,8 +64,8 @@ def _emit_arguments(parser: ArgumentParser) -> None:
     parser.add_argument(
         "--target", choices=TARGETS, help="language to emit (default: c for a kernel, all for --all and --check)"
     )
-    parser.add_argument("--jacobian", metavar="NAME,..", help="add the derivatives of the outputs by these inputs, "
-                        "such as omega,q, or by constants of a scene")  # fmt: skip
+    parser.add_argument("--jacobian", metavar="NAME,..", help="add the derivatives of the outputs with respect "
+                        "to these inputs, such as omega,q, or to constants of a scene")  # fmt: skip
     parser.add_argument("--step", metavar="METHOD", help="emit one time step of a scene: rk4, taylor, dop853 or exact")
     parser.add_argument(
         "--order", type=int, metavar="N", help="order of the Taylor series with --step taylor, 1 to 16 (default: 8)"

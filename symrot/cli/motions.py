@@ -158,8 +158,9 @@ def _run_arguments(parser: ArgumentParser) -> None:
         metavar="SEQUENCE",
         help="integrate Euler angles of this sequence, such as ZXZ (default: quaternion)",
     )
-    parser.add_argument("--sensitivities", metavar="NAME,..", help="also compute the derivatives of the motion by "
-                        "these initial values and constants, such as omega,weight; --out writes them")  # fmt: skip
+    parser.add_argument("--sensitivities", metavar="NAME,..", help="also compute the derivatives of the motion "
+                        "with respect to these initial values and constants, such as omega,weight; "
+                        "--out writes them")  # fmt: skip
     parser.add_argument("-o", "--out", type=Path, metavar="FILE",
                         help="write the output quantities: FILE.npz or FILE.csv")  # fmt: skip
     parser.add_argument("--plot", type=Path, metavar="FILE",

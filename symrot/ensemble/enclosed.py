@@ -1,7 +1,7 @@
 """Arithmetic on arrays of numbers with bounds of their errors, for formulas whose exact values are rounded once.
 
-Each number is a sum of two doubles, with a bound of its distance from the exact number. If all numbers within the bound
-round to the same double, that double is the exact number, rounded.
+Each number is stored as an unevaluated sum ``high + low`` of two doubles, with a bound of its distance from the exact
+number. If all numbers within the bound round to the same double, that double is the exact number, rounded.
 """
 
 from fractions import Fraction
@@ -40,7 +40,8 @@ class Enclosed:
     def _rounding(self, other: "Enclosed") -> Floats:
         """Return a bound of the relative error that the addition or multiplication of two arrays itself adds.
 
-        It is 0 where both numbers are single doubles, because a sum of two doubles then holds the result exactly.
+        The bound is 0 where both operands are doubles (their ``low`` is 0): the exact sum or product of two doubles is
+        a number ``high + low``.
         """
         return np.where((self.low == 0) & (other.low == 0), 0.0, ERROR)
 

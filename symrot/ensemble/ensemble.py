@@ -358,10 +358,10 @@ def propagate_ensemble(
     workers : int
         Number of threads that compute motions.
     sensitivities : sequence of str, optional
-        Initial values and constants by which all motions are differentiated: ``"omega"``, ``"attitude"``, and numbers
-        of the scene such as ``"weight"``, as for :func:`symrot.propagate`. The derivatives are in the attribute
-        ``sensitivities`` of the ensemble and are computed by Taylor series for every method. If this computation stops
-        before the last time for a motion, the motion stops there too.
+        Initial values and constants with respect to which all motions are differentiated: ``"omega"``, ``"attitude"``,
+        and numbers of the scene such as ``"weight"``, as for :func:`symrot.propagate`. The derivatives are in the
+        attribute ``sensitivities`` of the ensemble and are computed by Taylor series for every method. If this
+        computation stops before the last time for a motion, the motion stops there too.
 
     Returns
     -------
@@ -385,7 +385,8 @@ def propagate_ensemble(
     ``auto`` uses the closed form of each motion that has one; the samples then have the same bits as those of
     :func:`symrot.propagate`. For other motions, and where numeric integration is known to be faster
     (:func:`symrot.ensemble.exact.choose`), it uses Taylor series with one trajectory in each SIMD lane. Motions are
-    computed one by one if a torque jumps, bends or has no Taylor series, or is a formula that may have a short pulse. A
+    computed one by one if a torque has jumps, kinks or no Taylor series, or if a torque formula has degree 3 or more in
+    time and states or may have a short pulse (a large value for so short a time that a long step would miss it). A
     motion that reaches rest under quadratic damping has no Taylor series there and is computed by DOP853.
 
     Examples

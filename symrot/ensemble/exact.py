@@ -57,8 +57,10 @@ def forms_of(variation: Variation) -> list[tuple[Kind, Rows]]:
 def _patterns(variation: Variation) -> list[tuple[Hashable, Rows]]:
     """Return trajectories grouped by which numbers are zero or equal, as pairs (pattern, indices of trajectories).
 
-    All trajectories with one pattern, a hashable key, have the same closed form. If sums of constants may be zero too,
-    or if too many constants vary, each trajectory is a group of its own, with None instead of a pattern.
+    All trajectories with one pattern, a hashable key, have the same closed form. Each trajectory is a group of its own,
+    with None instead of a pattern, in two cases. The first: a constant varies of a torque that is not the only one of
+    its kind, so that the closed form depends on whether sums of constants are zero. The second: so many constants vary
+    that a pattern would need more than MOST_BITS conditions.
     """
     columns, n = variation.columns, len(variation)
     code = (variation.omega != 0) @ np.array([1, 2, 4])
@@ -74,7 +76,7 @@ def _patterns(variation: Variation) -> list[tuple[Hashable, Rows]]:
     kinds = [torque.kind for torque in variation.scene.torques]
     varied = [kinds[place] for name in columns if (place := variation.places[name].torque) >= 0]
     summed = any(kinds.count(kind) > 1 for kind in varied)
-    if summed or len(bits) > MOST_BITS:  # sums of constants may be zero too; each trajectory must be examined
+    if summed or len(bits) > MOST_BITS:
         return [(None, np.array([i])) for i in range(n)]
     code = code + np.array(bits).T @ (8 << np.arange(len(bits)))
     order = np.argsort(code, kind="stable")
@@ -95,14 +97,14 @@ def _patterns(variation: Variation) -> list[tuple[Hashable, Rows]]:
 #   are nearly equal, because its principal axes are computed in fractions. It takes 40 to 80 us for rotation about one
 #   axis or spin-up, if constants are too large or too small for a batch.
 ARRAYS_LOSE_BELOW = {"symmetric body driven about its axis, angular velocity alone": 1e4}
-"""Name of a closed form -> angle of rotation of a trajectory, rad, below which integration in steps is faster.
+"""Name of a closed form -> angle of rotation, rad, below which integration of a trajectory in steps is faster.
 
 This limit is used if only initial states vary in the ensemble, so that the closed form is computed for whole arrays of
 trajectories; see :func:`choose`.
 """
 
 ALONE_LOSES_BELOW = {"free_body": 1e4, "axial": 1e3, "spin_up": 1e3}
-"""Library of a closed form -> angle of rotation of a trajectory, rad, below which integration in steps is faster.
+"""Name of a closed form's C library -> angle of rotation, rad, below which integration in steps is faster.
 
 This limit is used where the closed form is computed for one trajectory after the other, not for arrays of them.
 """
@@ -239,7 +241,10 @@ class _Alone:
 
 _FAR = 1e100  # quotients of moments, torques and damping between 1/_FAR and _FAR neither over- nor underflow
 InBatch = NDArray[np.bool_] | bool
-"""Whether a batch computes a trajectory with the same bits as a single motion: for each trajectory, or for all."""
+"""Whether a batch computes a trajectory with the same bits as a single motion.
+
+The value is an array with a boolean for each trajectory, or one boolean if it is the same for all.
+"""
 
 
 class _Part(NamedTuple):
@@ -309,8 +314,9 @@ def _batches(variation: Variation, kind: Kind, rows: Rows) -> Iterator[tuple[Row
 def _parts(variation: Variation, kind: Kind, rows: Rows) -> Iterator[_Part]:
     """Yield the trajectories ``rows`` in groups, each of which one call of C can compute.
 
-    There is one group. Heavy tops whose centre of mass varies give two, with positive and with other components of the
-    centre of mass along the symmetry axis, because the formulas use different axes for them.
+    Usually there is one group. Heavy tops whose centre of mass varies give two groups: in one group the component of
+    the centre of mass along the symmetry axis is positive, in the other group it is not. The formulas use different
+    axes of space for the two groups.
     """
     groups = [rows]
     if kind.form and kind.form.library == "heavy_top" and variation.columns:
@@ -386,9 +392,11 @@ def _gyrostat(part: _Part) -> tuple["Batch | None", InBatch]:
 
 
 def _driving(part: _Part, kind: str, field: str, axis: int) -> Any:
-    """Return component ``axis`` of the vector ``field``, such as ``torque``, summed over the torques of one kind.
+    """Return the sum, over all torques of a ``kind``, of one component of the vector in their field ``field``.
 
-    An array (n,) if it varies between trajectories, otherwise a Fraction; None if one of several torques varies.
+    For the kind ``"constant_body"`` and the field ``"torque"`` this is component ``axis`` (0 to 2) of the total
+    constant torque. The result is an array (n,) if it varies between the trajectories, otherwise a Fraction. It is None
+    if it varies and several torques have the kind.
     """
     variation = part.variation
     components = [

@@ -67,8 +67,11 @@ class Problem(NamedTuple):
     workers: int
 
     def of(self, rows: Integers) -> "Problem":
-        """Return the problem for the motions ``rows`` alone, with a new plan."""
-        # the plan may use more facts, such as a constant that is zero in these motions only
+        """Return the problem of computing only the motions with the indices ``rows``.
+
+        It has a plan (a choice of equations and states) of its own, which may be simpler: a constant may be zero in
+        these motions only.
+        """
         variation = self.variation.of(rows)
         times = self.times if self.times.ndim == 1 else self.times[rows]
         return self._replace(variation=variation, plan=variation.plan(), times=times)
@@ -124,7 +127,10 @@ def _together(parts: Sequence[Followed], groups: Sequence[Integers]) -> Followed
 
 
 def _follow(problem: Problem, method: str, rows: Integers) -> Followed:
-    """Return the samples of motions that have the same plan: in closed form, in SIMD lanes, or one by one."""
+    """Return the samples of motions that are computed from the same equations and states (one plan).
+
+    The motions are computed in closed form, in SIMD lanes, or one by one.
+    """
     count = len(problem.variation)
     solved = _solved(problem, method)
     by_steps = np.ones(count, dtype=bool)
@@ -231,7 +237,10 @@ def _stepping_method(problem: Problem) -> str:
 
 
 def lane_library(plan: Plan, kernel: SceneKernel, tolerance: float) -> Any:
-    """Return the compiled library that integrates motions of a plan in SIMD lanes."""
+    """Return the compiled library that integrates the equations of a plan, one motion in each SIMD lane.
+
+    The plan chooses the equations and states of a scene. ``tolerance`` determines the order of the Taylor series.
+    """
     order = lanes.order_for(tolerance)
     key = f"lanes {order}\n{kernel_key(plan)}"
     system = library.fetch(key)
@@ -267,11 +276,12 @@ class _Stepped:
         return times - self.epoch if self.epoch else times
 
     def clock(self, k: int, make: Callable[[Plan, SceneKernel], Any] = motion_library) -> Any:
-        """Return a function that takes an epoch and returns (rates of motion k, values of their parameters).
+        """Return a function that makes the right-hand side of motion k for times counted from any epoch.
 
-        The rates are what ``make`` returns, a compiled library or a Python function, and take the time since the epoch.
-        A stepper that begins to count its time from a new epoch calls the function for the rates in this time. Return
-        None if the rates do not depend on time.
+        In a long motion, a stepper counts its time again and again from a new epoch, so that times stay small and keep
+        their digits. At each new epoch it calls the function, which returns a pair: the code that computes the rates
+        (time derivatives of the states) from the time since the epoch, and the values of its parameters. ``make``
+        makes the code, a compiled library or a Python function. Return None if the rates do not depend on time.
         """
         # see symrot.propagation.time_shift.clock
         if not self.kernel.rates.uses("t"):
@@ -283,11 +293,14 @@ class _Stepped:
         return epoch.clock(moving, self.numbers.constants(k), self.epoch, make)
 
     def read(self, states: Floats, omega: Floats, quaternion: Floats | None) -> None:
-        """Write the samples that follow from the states, shape (n, m, N), into ``omega`` and ``quaternion``."""
+        """Compute the samples of ``omega`` and ``quaternion`` from the integrated states, and write them there.
+
+        ``states`` has the shape (n, m, N), for n motions, m times and the N states of the plan.
+        """
         chosen = np.asarray(self.chosen)
         whole = len(chosen) == len(omega) and bool((chosen == np.arange(len(omega))).all())
         rows = slice(None) if whole else chosen  # a slice needs no copies
-        # the plan's N states may be fewer than the seven of omega and q, such as one angle
+        # N may be less than 7 (omega and q): the only state may be an angle
         values: dict[str, Any] = dict(zip(self.plan.states, np.moveaxis(states, -1, 0), strict=True))
         values["t"] = self.times
         outputs = OMEGA + (QUATERNION if quaternion is not None else ())

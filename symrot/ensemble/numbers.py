@@ -34,7 +34,7 @@ class Numbers:
     variation : Variation
         The initial states and constants that vary in the ensemble.
     plan : Plan
-        A plan that is valid for all trajectories.
+        The equations and states of the scene, chosen so that they hold for all trajectories.
     chosen : whole numbers
         The indices of the trajectories.
     """
@@ -52,7 +52,7 @@ class Numbers:
     def constants(self, k: int) -> dict[str, Fraction]:
         """Return all constants of one trajectory as exact fractions, by name, such as ``weight`` or ``A``.
 
-        ``k`` counts the trajectories of this object, so that it is an index into the argument ``chosen`` of the class.
+        ``k`` is the position of the trajectory in ``chosen``, the argument of the class.
         """
         return Plan(self._variation.scene_of(self._chosen[k]), self._plan.structure, ()).constants
 
@@ -73,16 +73,19 @@ class Numbers:
         return values
 
     def slopes(
-        self, parameters: Parameters, moved: Mapping[str, Fraction], variable: str, epoch: float = 0.0
+        self, parameters: Parameters, constant_slopes: Mapping[str, Fraction], variable: str, epoch: float = 0.0
     ) -> dict[str, Floats]:
-        """Return the derivatives of kernel parameters by a variable for each trajectory, shape (n,), by name.
+        """Return the derivatives of kernel parameters with respect to a variable, as a map from name to array (n,).
+
+        Each array has the derivatives of one parameter for the n trajectories.
 
         Parameters
         ----------
         parameters : pairs of name and formula
             The parameters; those that do not depend on the variable are left out of the result.
-        moved : mapping
-            The derivative of each constant by the variable, such as ``{"weight": 1}``, the same for all trajectories.
+        constant_slopes : mapping
+            The derivative of each constant with respect to the variable, such as ``{"weight": 1}``. It is the same for
+            all trajectories.
         variable : str
             The name of the variable, for messages.
         epoch : float
@@ -97,18 +100,18 @@ class Numbers:
         result: dict[str, Floats] = {}
         for name, node in parameters:
             used = names(node)
-            if used.isdisjoint(moved):
+            if used.isdisjoint(constant_slopes):
                 continue
             own = [key for key in self._columns if key in used]
             if node[0] == "symbol":
-                result[name] = np.full(len(self._chosen), float(moved[node[1]]))
+                result[name] = np.full(len(self._chosen), float(constant_slopes[node[1]]))
                 continue
             if not own:
-                slope = _slope(node, fixed, moved, variable, {})
+                slope = _slope(node, fixed, constant_slopes, variable, {})
                 if slope:
                     result[name] = np.full(len(self._chosen), float(slope))
                 continue
-            slope_of = partial(_slope, node, fixed, moved, variable)
+            slope_of = partial(_slope, node, fixed, constant_slopes, variable)
             result[name] = _in_fractions(slope_of, {key: self._columns[key] for key in own})
         return result
 
@@ -152,19 +155,23 @@ def _in_fractions(function: Callable[[dict[str, Fraction]], Fraction], columns: 
 
 
 def _slope(
-    node: Node, fixed: Mapping[str, Fraction], moved: Mapping[str, Fraction], variable: str, one: Mapping[str, Fraction]
-) -> Fraction:
-    """Return the derivative of the formula ``node`` by a variable, for one trajectory.
+    node: Node, fixed: Mapping[str, Fraction], constant_slopes: Mapping[str, Fraction], variable: str,
+    varying: Mapping[str, Fraction],
+) -> Fraction:  # fmt: skip
+    """Return the derivative of the formula ``node`` with respect to a variable, for one trajectory.
 
-    ``fixed`` are the constants that all trajectories share, ``one`` the other constants of this trajectory, and
-    ``moved`` the derivatives of constants by the variable: ``A*B`` with A = 2, B = 3 and ``moved = {"A": 1}`` gives 3.
+    ``fixed`` are the constants that all trajectories share, and ``varying`` the other constants of this trajectory.
+    ``constant_slopes`` has the derivatives of constants with respect to the variable: ``A*B`` with A = 2, B = 3 and
+    ``constant_slopes = {"A": 1}`` gives 3.
     """
-    constants = {**fixed, **one}
-    ratios = [abs(constants[name] / slope) for name, slope in moved.items() if slope and name in constants]
+    constants = {**fixed, **varying}
+    ratios = [abs(constants[name] / slope) for name, slope in constant_slopes.items() if slope and name in constants]
     size = min((ratio for ratio in ratios if ratio), default=Fraction(1))
 
     def values(change: Fraction) -> Mapping[str, Fraction]:
-        moving = {name: constants[name] + change * slope for name, slope in moved.items() if name in constants}
-        return {"": value_of(node, {**constants, **moving})}
+        changed = {
+            name: constants[name] + change * slope for name, slope in constant_slopes.items() if name in constants
+        }
+        return {"": value_of(node, {**constants, **changed})}
 
     return slopes(values, size * STEP, variable).get("", Fraction(0))

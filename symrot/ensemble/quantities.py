@@ -17,7 +17,7 @@ __all__ = ["Source"]
 
 
 class Source(NamedTuple):
-    """An ensemble's variation (initial states and constants of each motion), and a plan valid for all its motions."""
+    """The initial states and constants of each motion of an ensemble, and equations (a plan) valid for all motions."""
 
     variation: Variation
     plan: Plan

@@ -106,7 +106,7 @@ def to_body(quaternion: Floats, omega_s: Floats) -> Floats:
 
 
 def _quaternions(attitude: Any) -> ArrayLike:
-    """Return n rotations of SciPy, n quaternions or n matrices ``dcm_sb`` as quaternions, shape (n, 4)."""
+    """Convert n rotations of SciPy, n quaternions or n matrices ``dcm_sb`` to quaternions, shape (n, 4)."""
     if hasattr(attitude, "as_quat"):
         return np.roll(np.atleast_2d(attitude.as_quat()), 1, axis=1)
     array = real_array(attitude, "attitude", "rotations of SciPy, or an array of shape (n, 4) or (n, 3, 3)")

@@ -1,8 +1,9 @@
-"""The derivatives of the motions of an ensemble by initial values and constants, in SIMD lanes.
+"""The derivatives of the motions of an ensemble with respect to initial values and constants, in SIMD lanes.
 
 Motions under torques with jumps or kinks are followed one by one.
 
-A column consists of the derivatives by one variable. The equations are those of
+The variables are the initial values and constants with respect to which the motions are differentiated. A
+:class:`Column` says how a scene depends on one of these variables. The equations are those of
 :mod:`symrot.propagation.sensitivities.variation`. Every constant that varies in the ensemble is a parameter of the
 equations, so the derivatives of a motion do not depend on the other motions.
 """
@@ -63,7 +64,7 @@ BLOCK = 1 << 22  # numbers of one block of motions that are in memory beside the
 
 
 def follow_sensitivities(problem: Problem, keys: Sequence[str]) -> tuple[Sensitivities, tuple[str, ...]]:
-    """Return the derivatives of all motions of a problem, and for each motion why the derivatives stopped early.
+    """Return the derivatives of all motions of a problem, and for each motion why their computation stopped early.
 
     Parameters
     ----------
@@ -74,15 +75,15 @@ def follow_sensitivities(problem: Problem, keys: Sequence[str]) -> tuple[Sensiti
 
     Returns
     -------
-    Sensitivities, texts
+    Sensitivities, messages
         Arrays of the shapes (n, m, 3, k), (n, m, 4, k) and (n, m, 3, k) for n motions, m times and k variables; NaN at
-        times that the derivatives of a motion did not reach. The text of a motion that reached all times is empty.
+        times that the computation did not reach for a motion. The message of a motion that reached all times is empty.
 
     Raises
     ------
     InputError
-        If the torques have no derivatives, if a key names no variable, or if a variable, such as gravity, changes
-        another number, such as weight, that differs between the motions.
+        If the torques have no derivatives, if a key names no variable, or if a variable, such as gravity, determines a
+        constant, such as the weight, that differs between the motions.
     """
     variation, scene = problem.variation, problem.variation.scene
     own = [float(rate) for rate in scene.initial.omega_b]
@@ -116,8 +117,8 @@ def follow_sensitivities(problem: Problem, keys: Sequence[str]) -> tuple[Sensiti
 def _follow_switched(problem: Problem, keys: Sequence[str]) -> tuple[Sensitivities, tuple[str, ...]]:
     """Return the derivatives of motions under torques with jumps or kinks, which are followed one by one.
 
-    Arguments and result are those of :func:`follow_sensitivities`. All derivatives of a motion are NaN if those at one
-    of its times do not exist; its text then says why.
+    Arguments and result are those of :func:`follow_sensitivities`. If a motion has no derivatives at one of the times,
+    all derivatives of this motion are NaN, and its message says why.
     """
     from symrot.propagation.sensitivities.switched import SwitchedEquations
 
@@ -139,27 +140,31 @@ def _follow_switched(problem: Problem, keys: Sequence[str]) -> tuple[Sensitiviti
 
 
 def _labelled(variables: Sequence[Variable], omega: Floats, quaternion: Floats, rotation: Floats) -> Sensitivities:
-    """Return arrays of derivatives by ``variables`` with the names and the units of the variables."""
+    """Return arrays of derivatives together with the names and the units of their ``variables``."""
     names, units = tuple(variable.name for variable in variables), tuple(variable.unit for variable in variables)
     return Sensitivities(names, units, groups_of(variables), omega, quaternion, rotation)
 
 
 def read_columns(scene: Scene, keys: Sequence[str], varying: Collection[str]) -> tuple[list[Variable], list[Column]]:
-    """Return the variables that ``keys`` name, such as ``"omega_2"``, and a :class:`Column` of derivatives for each."""
+    """Return the variables that ``keys`` name, such as ``"omega_2"``, and for each how the scene depends on it.
+
+    InputError is raised if a variable determines a number of ``varying``: the names of the constants that differ
+    between the motions, and omega or quaternion if the initial states differ.
+    """
     require_formulas(scene)
     variables = read_variables(scene, keys)
     columns = columns_of(scene, variables)
-    # varying: names of varying constants, and omega or quaternion if the initial states vary
     for column in columns:
         _require_shared(column, varying)
     return variables, columns
 
 
 def _require_shared(column: Column, varying: Collection[str]) -> None:
-    """Raise InputError if the variable of ``column`` changes another number that differs between the motions.
+    """Raise InputError if a variable determines another number of the scene that differs between the motions.
 
-    An example is the variable gravity, which changes the weight, if the motions have different weights. ``varying`` has
-    the names of the constants that differ, and omega or quaternion if the initial states do.
+    An example is the variable gravity, which determines the weight, if the motions have different weights. ``column``
+    has the variable and the derivatives of all numbers that it determines. ``varying`` has the names of the constants
+    that differ between the motions, and omega or quaternion if the initial states differ.
     """
     variable = column.variable
     if variable.key == ATTITUDE or variable.key.startswith("omega"):
@@ -186,14 +191,14 @@ def _constant(variable: Variable) -> str:
 
 
 class _Equations:
-    """The compiled equations of n motions and of their derivatives by k variables, with the constants of each motion.
+    """The compiled equations of n motions and of their derivatives, with the constants of each motion.
 
     Parameters
     ----------
     problem : Problem
         The motions.
     columns : sequence of Column
-        The variables, at most :data:`AT_ONCE`.
+        For each of the k variables, how the scene depends on it; at most :data:`AT_ONCE`.
     """
 
     def __init__(self, problem: Problem, columns: Sequence[Column]) -> None:
@@ -235,10 +240,10 @@ class _Equations:
         return library.build(lanes.wrap_translation_unit(text), "lanes", lanes.FLAGS)
 
     def follow(self, rows: lanes.Integers) -> tuple[Floats, Floats, list[str]]:
-        """Return the states of n motions at m times, shape (n, m, 7), their derivatives, (n, m, 7, k), and n texts.
+        """Return the states of n motions at m times, shape (n, m, 7), their derivatives, (n, m, 7, k), and n messages.
 
-        The derivatives are those by the k variables. A text says why a motion stopped early; it is empty for a motion
-        that reached all times. ``rows`` are the indices of the motions.
+        The last axis of the derivatives counts the k variables. A message says why a motion stopped early; it is empty
+        for a motion that reached all times. ``rows`` are the indices of the motions.
         """
         problem, count, columns = self.problem, len(rows), len(self.columns)
         times = problem.times if problem.times.ndim == 1 else problem.times[rows]
@@ -269,8 +274,11 @@ class _Equations:
         return grid[..., :SIZE], slopes_of.transpose(0, 1, 3, 2), reasons
 
     def _start(self, rows: lanes.Integers) -> Floats:
-        """Return the initial states of the motions ``rows`` and their derivatives by k variables, (n, 7, 1 + k)."""
-        # 7: angular velocity and quaternion; the states come first on the last axis
+        """Return the initial states of n motions and their derivatives with respect to k variables, (n, 7, 1 + k).
+
+        ``[:, :, 0]`` are the states, angular velocity and quaternion; ``[:, :, j]`` are their derivatives with respect
+        to variable j. ``rows`` are the indices of the motions.
+        """
         states = self.problem.variation.initial_states[rows]
         start = np.empty((len(rows), SIZE, 1 + len(self.columns)))
         start[..., 0] = states
@@ -281,8 +289,11 @@ class _Equations:
         return start
 
     def _units(self, rows: lanes.Integers) -> Floats:
-        """Return the factors by which the derivatives by k variables are multiplied while integrated, shape (n, k)."""
-        # powers of two
+        """Return, for n motions and k variables, the unit in which a variable is measured in the integration, (n, k).
+
+        The integrated derivative is the derivative times this unit, so that it is about as large as the states. The
+        units are powers of two near the values of the variables. ``rows`` are the indices of the motions.
+        """
         variation, units = self.problem.variation, np.ones((len(rows), len(self.columns)))
         for k, column in enumerate(self.columns):
             variable = column.variable
@@ -294,14 +305,13 @@ class _Equations:
             else:
                 varied = variation.columns.get(_constant(variable))
                 sizes = np.full(len(rows), abs(float(variable.value))) if varied is None else np.abs(varied[rows])
-            # near the value of the variable, so that the derivatives times it are about as large as the states
             units[:, k] = np.where(sizes > 0, np.ldexp(1.0, np.frexp(sizes)[1]), 1.0)
         return units
 
     def _integrate(self, p: Floats, y: Floats, times: Floats) -> tuple[Floats, Sequence[str]]:
         """Return samples of n motions at m times, and for each motion why it stopped early, or an empty text.
 
-        A sample has the 7 states and their derivatives by k variables: the shape is (n, m, 7 (1 + k)).
+        A sample has the 7 states and then, for each of the k variables, 7 derivatives: the shape is (n, m, 7 (1 + k)).
         """
         problem = self.problem
         if isinstance(self.compiled, Path):

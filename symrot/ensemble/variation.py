@@ -190,8 +190,11 @@ class Variation:
         return plan
 
     def patterns(self) -> list[NDArray[np.intp]]:
-        """Return the trajectories grouped by their plans (choices of equations), as arrays of indices."""
-        # only the trajectory's own constants count: which are zero, and which moments are equal
+        """Return the trajectories grouped by the equations that suit them, as arrays of indices.
+
+        In all trajectories of a group the same constants are zero, and the same moments of inertia are equal. So the
+        group of a trajectory depends only on its own constants.
+        """
         bits = [column != 0 for column in self.columns.values()]
         if not PLACES.keys().isdisjoint(self.columns):
             moments = [self.constant(name) for name in PRINCIPAL]
@@ -212,8 +215,11 @@ class Variation:
         return make_plan(self._with(GENERAL_START, values), switched=switched(self.scene))
 
     def _representative_inertia(self) -> dict[str, Fraction]:
-        """Return the entries, by name, of one inertia tensor from which a plan for all trajectories is made."""
-        # its moments are equal and its products zero only if they are so in every trajectory
+        """Return the entries, by name, of one inertia tensor that stands for the tensors of all trajectories.
+
+        Its moments are equal, and its products of inertia zero, only where they are so in every trajectory. So a plan
+        (choice of equations) that is made from it is valid for all trajectories.
+        """
         inertia = self.scene.body.inertia
         tensor: dict[str, Fraction] = {}
         for k, name in enumerate(PRINCIPAL):
@@ -263,6 +269,9 @@ def _unit(row: list[float]) -> tuple[Fraction, Fraction, Fraction, Fraction]:
 
 
 def _representative(column: Floats) -> Fraction:
-    """Return one value of a column, zero only if all are zero: ``[0, 3, 4]`` gives 3."""
-    # a plan is made from it for all trajectories, and makes use of zeros
+    """Return one value of a column, zero only if all values are zero: ``[0, 3, 4]`` gives 3.
+
+    A plan (choice of equations) that is made from this value is valid for all trajectories: it drops a term only if the
+    constant is zero in each of them.
+    """
     return Fraction(float(column[np.argmax(column != 0)]))

@@ -30,9 +30,9 @@ MOST_DRAWS = 10_000
 """Number of random choices after which ProofError is raised, if none of them suits the problem."""
 
 ZERO = 30
-"""The number of digits for which an answer of zero counts in the choice of the numbers with the shortest answers.
+"""The length of an answer of zero, in digits, where numbers are chosen so that the answers are short.
 
-An answer of zero teaches little; so it counts as a very long answer, and such answers are rare.
+An answer of zero teaches little. It counts as if it had this many digits, so such answers are rare.
 """
 
 DIGITS = 17  # significant digits that distinguish any two doubles

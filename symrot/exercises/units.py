@@ -87,8 +87,9 @@ def unit_latex(unit: str) -> str:
 def decimal(value: Any, digits: int = 4) -> str:
     """Return a number as text, rounded to ``digits`` significant digits.
 
-    A whole number of a magnitude below 10^6 is not rounded, and other numbers from 10^digits to 10^7 only to a whole
-    number. Magnitudes below 0.0001 and from 10^7 have an exponent, as in ``1.2e7``.
+    A whole number of a magnitude below 10^6 is not rounded. Any other number of a magnitude from 10^digits to 10^7 is
+    rounded to a whole number, which has more digits. Magnitudes below 0.0001 and from 10^7 have an exponent, as in
+    ``1.2e7``.
 
     Examples
     --------

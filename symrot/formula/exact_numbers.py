@@ -194,7 +194,11 @@ def tan(value: Fraction) -> Fraction:
 
 
 def equal(a: Fraction, b: Fraction) -> bool:
-    """Return whether the relative difference of two numbers is below 2^-200, which counts as equal in a scene."""
+    """Return whether two numbers are equal, or so close that their difference is below 2^-200 of the larger size.
+
+    symrot compares the numbers of a scene in this way, such as two moments of inertia, because numbers that contain pi,
+    roots or sines are rounded when the scene is read.
+    """
     return a == b or abs(a - b) * NEGLIGIBLE.denominator < max(abs(a), abs(b))
 
 

@@ -1,8 +1,8 @@
 """Formulas with jumps or kinks, rewritten as smooth formulas that a stepper integrates from one jump to the next.
 
-A switch is a jump or kink. Its guard is a smooth formula; its mode is a symbol for the sign of the guard (1 or -1) or
-for its floor, which is constant between two jumps: ``sign(u)`` becomes s and ``abs(u)`` becomes ``s*u``, with the guard
-u and the mode s. Standard library only.
+A switch is a jump or kink of a formula. It has a guard, which is a smooth formula, and a mode, which is a symbol for
+the sign of the guard (1 or -1) or for its floor. The mode is constant between two jumps: ``sign(u)`` becomes s and
+``abs(u)`` becomes ``s*u``, with the guard u and the mode s. Standard library only.
 """
 
 from collections.abc import Collection, Iterable, Mapping
@@ -30,6 +30,10 @@ CONDITIONS = {"less", "and", "or", "not"}
 MODES = "switch_"  # prefix of the names of modes
 HARMLESS_DEGREE = 6  # polynomials up to this degree are defined everywhere and have no short pulse
 RISKY = HARMLESS_DEGREE + 1
+"""The degree that stands for formulas that may have a pole, a short pulse or no value somewhere.
+
+A short pulse, such as that of ``exp(-(50*t - 9)**2)``, lasts so short a time that a long step may miss it.
+"""
 
 Conditions = tuple[tuple[Node, int], ...]
 """Conditions under which a part of a formula applies, as pairs (formula, value): each formula must have its value.
@@ -69,7 +73,7 @@ class Switch(NamedTuple):
 
 
 class Smooth(NamedTuple):
-    """Smooth formulas in place of formulas with jumps and kinks, and the switches at which they change."""
+    """Smooth formulas in place of formulas with jumps and kinks, and a :class:`Switch` for each jump or kink."""
 
     formulas: tuple[Node, ...]  # with modes, and with where(p, a, b), where p is a formula of modes, equal to 1 or 0
     switches: tuple[Switch, ...]  # a switch comes after the switches whose modes occur in its guard
@@ -110,10 +114,11 @@ def condition_error(node: Node) -> str:
 
 
 def hold(conditions: Iterable[tuple[Node, int]], modes: Mapping[str, int], held: Collection[str] = ()) -> bool:
-    """Return whether all ``conditions``, pairs (formula, value), are true for the values of the ``modes``.
+    """Return whether all ``conditions``, pairs (formula, value), hold: each formula must have its value.
 
-    ``held`` are the modes without a fixed value, because the motion slides along their switch (stays at the jump). A
-    condition with such a mode counts as true.
+    The symbols in the formulas are modes: each stands for the sign or floor of a guard, see :class:`Switch`. ``modes``
+    maps their names to their present values. ``held`` are the names of modes without a value, because the motion stays
+    at the jump (slides along it), where the guard is zero. A condition with such a mode counts as true.
     """
     return all(names(indicator) & set(held) or evaluate(indicator, modes) == value for indicator, value in conditions)
 
@@ -124,10 +129,11 @@ def has_choices(node: Node) -> bool:
 
 
 def chosen(node: Node, modes: Mapping[str, int], held: Collection[str] = ()) -> Node:
-    """Return a formula with each ``where(p, a, b)`` replaced by a, if p = 1 for the values of the ``modes``, else by b.
+    """Return a formula in which each ``where(p, a, b)`` is replaced by a if p is 1, or by b if p is 0.
 
-    ``held`` are the modes without a fixed value, as for :func:`hold`: ``where(p, a, b)`` with such a mode in p is
-    replaced by ``b + p*(a - b)``.
+    p is a formula whose symbols are modes: each stands for the sign or floor of a guard, see :class:`Switch`. ``modes``
+    maps their names to their present values. ``held`` are the names of modes without a value, as for :func:`hold`:
+    ``where(p, a, b)`` with such a mode in p is replaced by ``b + p*(a - b)``.
     """
     if not has_choices(node):
         return node
@@ -195,7 +201,11 @@ def _is_linear(node: Node, mode: str) -> bool:
 
 
 def _degree(node: Node) -> int:
-    """Return the degree of a formula in time, states and sines of time; RISKY if it may have a pole or short pulse."""
+    """Return the degree of a formula in time, states and sines of time.
+
+    It is :data:`RISKY` for a polynomial of at least that degree, and for a formula that may have a pole, a short pulse
+    or no value somewhere.
+    """
     kind = node[0]
     if kind in ("number", "symbol"):
         return int(kind == "symbol" and node[1] in CHANGING)
@@ -232,9 +242,10 @@ def _risky(condition: Node) -> bool:
 
 @lru_cache(maxsize=256)
 def smooth(sources: tuple[str, ...]) -> Smooth:
-    """Return formulas, given as text, in smooth form, with their switches.
+    """Return smooth formulas in place of formulas (given as text) with jumps and kinks, and a switch for each of these.
 
-    ``abs(t)`` becomes ``s*t``, where the mode s is the sign of t.
+    ``abs(t)`` becomes ``s*t`` with the symbol s, a mode, which stands for the sign of t. Its switch has the mode s and
+    the guard t: the sign changes where t is zero.
     """
     nodes = [parse(source, switching=True) for source in sources]
     used_names = set().union(*map(names, nodes))
@@ -270,14 +281,24 @@ class _Writer:
         self.label = ""  # the function call that is being rewritten
         self.conditions: Conditions = ()  # conditions under which the part being rewritten applies
 
-    def mode(self, kind: str, guard: Node, where: Conditions = (), at_zero: int = 1) -> Node:
+    def mode(self, kind: str, guard: Node, conditions: Conditions = (), at_zero: int = 1) -> Node:
         """Return the symbol (mode) that stands for the sign or the floor of the formula ``guard``.
 
-        If there is none yet, a :class:`Switch` is added to ``switches``. The arguments are the fields of
-        :class:`Switch`. Inside the a or b of a ``where(c, a, b)``, the switch gets the condition under which this a or
-        b applies, and the conditions ``where`` in addition.
+        If there is no such symbol yet, a new :class:`Switch` is added to ``switches``.
+
+        Parameters
+        ----------
+        kind : str
+            ``"sign"`` or ``"floor"``.
+        guard : Node
+            A smooth formula.
+        conditions : Conditions
+            Conditions under which the switch affects the formula. In addition it has the condition under which the
+            part being rewritten applies, if this is the a or b of a call ``where(c, a, b)``.
+        at_zero : int
+            Value of the mode while the guard is exactly zero.
         """
-        where = self.conditions + where
+        where = self.conditions + conditions
         for count in range(len(where) + 1):  # a mode that applies under fewer of the conditions serves as well
             if (mode := self.known.get((kind, guard, where[:count], at_zero))) is not None:
                 return mode
@@ -326,7 +347,7 @@ class _Writer:
     def indicator(self, condition: Node) -> Node:
         """Return a formula of modes that is 1 if a condition holds, otherwise 0.
 
-        ``t < 1`` gives ``(1 + s)/2``, where the mode s is the sign of 1 - t.
+        ``t < 1`` gives ``(1 + s)/2`` with the symbol s, a mode, which stands for the sign of 1 - t.
         """
         name, parts = condition[1], condition[2]
         if name == "less":
@@ -381,7 +402,10 @@ class _Writer:
 
 
 def _difference(a: Node, b: Node) -> Node:
-    """Return the formula a - b, or a if b is 0: ``u > 0`` then switches with the same formula u as ``sign(u)``."""
+    """Return the formula a - b, or only a if b is 0.
+
+    So ``u > 0`` has the guard u, the same as ``sign(u)``.
+    """
     return a if b == ("number", 0) else ("-", a, b)
 
 

@@ -335,7 +335,18 @@ _INFIX = {"+": (10, " + "), "-": (10, " - "), "*": (20, "*"), "/": (20, "/")}
 
 
 def text(node: Node, binding: int = 0, literal: Callable[[Fraction], str] = str) -> str:
-    """Return a formula as infix text, with brackets that preserve its order of evaluation."""
+    """Return a formula as infix text, with brackets that preserve its order of evaluation.
+
+    Parameters
+    ----------
+    node : Node
+        The formula.
+    binding : int
+        How strongly the operator around the formula binds, from 0 (no operator) to 41 (base of a power). An operation
+        that binds less strongly gets brackets: ``a + b`` does for 11 and more.
+    literal : callable
+        Returns a number of the formula as text, such as a literal of C.
+    """
     kind = node[0]
     if kind == "number":
         # parse reads the same tree from the text, except that a fraction becomes a quotient, and -2 becomes a negation

@@ -82,10 +82,10 @@ def propagator(
         Longest step, s, under an additional torque that is a function; choose it shorter than the shortest pulse of the
         torque. Formulas need no such limit; for a table it follows from the samples.
     sensitivities : sequence of str, optional
-        Initial values and constants by which the motion is differentiated: ``"omega"`` (three components),
+        Initial values and constants with respect to which the motion is differentiated: ``"omega"`` (three components),
         ``"attitude"`` (a small rotation about each body axis), or names of :meth:`symrot.Scene.with_` such as
-        ``"weight"``. The derivatives are ``sensitivities`` of a trajectory. For every method, also for closed forms,
-        Taylor series of the variational equations compute them.
+        ``"weight"``. The derivatives are in the attribute ``sensitivities`` of a trajectory. For every method, also for
+        closed forms, Taylor series of the variational equations compute them.
 
     Returns
     -------

@@ -55,7 +55,7 @@ class Propagator:
     tolerance : float
         Error of the trajectory to aim for.
     sensitivities : sequence of str, or None
-        The initial values and constants by which derivatives of the motion are computed.
+        The initial values and constants with respect to which the motion is differentiated.
 
     Examples
     --------

@@ -305,7 +305,9 @@ def plot(trajectory: "Trajectory", ax: Any = None, panel: str = "rates") -> Any:
     if panel == "drift" and not hasattr(trajectory, "invariants"):
         raise InputError("panel: expected a trajectory for 'drift', got one motion of an ensemble; propagate it alone")
     if panel == "vertical" and not has_vertical(trajectory.scene):
-        raise InputError("panel: expected a scene with one torque of gravity or gravity_gradient for 'vertical'")
+        raise InputError(
+            "panel: expected for 'vertical' a scene with exactly one torque of the kind gravity or gravity_gradient"
+        )
     if panel in ("attitude", "vertical", "space"):
         trajectory.quaternion  # noqa: B018 - an error comes before a new figure
     if ax is None:

@@ -1,4 +1,4 @@
-"""Derivatives of a motion by initial values and constants, at the sample times, with labels."""
+"""Derivatives of a motion with respect to initial values and constants, at the sample times, with labels."""
 
 from collections.abc import Iterator, Mapping, Sequence
 from dataclasses import dataclass, replace
@@ -26,7 +26,9 @@ TIME = "t"
 
 
 class Sensitivity(NamedTuple):
-    """Derivatives at n samples by one variable, or by a vector; its k components are then the last axis of the arrays.
+    """Derivatives of a motion at n samples with respect to one variable, or to the k components of a vector.
+
+    For a vector, the last axis of the arrays counts its components.
 
     Attributes
     ----------
@@ -79,7 +81,9 @@ class SwitchSlopes(NamedTuple):
 
 @dataclass(frozen=True, eq=False)
 class Sensitivities(Mapping[str, Sensitivity]):
-    """Derivatives of a motion at n samples, by m variables: a mapping from the requested names to derivatives.
+    """Derivatives of a motion at n samples with respect to m variables, as a mapping.
+
+    The keys are the requested names, such as ``"omega"``, and each value is a :class:`Sensitivity`.
 
     Attributes
     ----------

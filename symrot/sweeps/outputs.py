@@ -1,7 +1,7 @@
 """Outputs of a sweep: quantities of each trajectory at all sample times or at one time, or their extremes and means.
 
 Examples: ``energy`` at all sample times, ``omega_1@end`` at the last time, ``axis_z@2.5`` at 2.5 s, ``omega_3@max``,
-the largest sample, and ``omega_2_by_weight@end``, a derivative by an initial value or a constant.
+the largest sample, and ``omega_2_by_weight@end``, a derivative with respect to an initial value or a constant.
 """
 
 from collections.abc import Callable, Sequence

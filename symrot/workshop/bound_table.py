@@ -52,27 +52,35 @@ def table_faults() -> list[str]:
 
     The list is empty if the table is complete and up to date.
     """
-    required, known = library_tasks(), table()["bounds"]
+    tasks, known = library_tasks(), table()["bounds"]
     faults = [] if table()["method"] == method() else ["the table was computed by earlier source files"]
-    if lacking := len(set(required) - set(known)):
+    if lacking := len(set(tasks) - set(known)):
         faults.append(f"{lacking} bounds are not in the table")
-    if others := len(set(known) - set(required)):
+    if others := len(set(known) - set(tasks)):
         faults.append(f"{others} bounds of the table belong to no kernel of the library")
-    if wrong := understated({key: task for key, task in required.items() if key in known}):
+    if wrong := understated({key: task for key, task in tasks.items() if key in known}):
         faults.append(
             f"{len(wrong)} bounds are below the error at a point in their input ranges, the first with key {wrong[0]}"
         )
     return faults
 
 
-def understated(required: Mapping[str, BoundTask]) -> list[str]:
-    """Return the keys of tasks whose stored bound is missing, infinite, or smaller than the error at a stored point."""
-    # ``required`` maps keys to tasks: the search for the largest rounding error of one output on one box
-    return [key for key, task in required.items() if not _is_consistent(task, STORE.get(key))]
+def understated(tasks: Mapping[str, BoundTask]) -> list[str]:
+    """Return the keys of those tasks that have no finite bound in the store, or one that is certainly too small.
+
+    A task is to bound the rounding error of one output of a kernel on one box of inputs. The store (symrot's table and
+    the user's cache) holds with each bound the point of the box at which the search found the largest error. The bound
+    is too small if the error at this point, which is computed again, is larger.
+    """
+    return [key for key, task in tasks.items() if not _is_consistent(task, STORE.get(key))]
 
 
 def _is_consistent(task: BoundTask, search: SearchResult | None) -> bool:
-    """Return whether a stored bound is finite and not smaller than the error at the worst point stored with it."""
+    """Return whether there is a stored bound that is finite and not smaller than the error at its stored point.
+
+    ``search`` is the stored bound with this point, the one at which the search found the largest error; None if the
+    store has no bound for the task.
+    """
     if search is None or len(search.worst) != len(task.low):
         return False
     point = np.array(search.worst)

@@ -35,7 +35,7 @@ def rounding_problem(
 ) -> tuple[Operations, RoundingProblem, dict[str, Any]]:
     """Return the operations of a kernel, the problem of bounding their rounding errors, and the box of inputs.
 
-    The user's ``ranges`` replace the kernel's own in the box.
+    The box has a range for each input: the user's range or, if the user gives none, the kernel's own range.
 
     Parameters
     ----------
@@ -98,7 +98,7 @@ def _operations(kernel: KernelText, precision: str) -> Operations:
 def require_known(kernel: str) -> None:
     """Raise InputError unless ``kernel`` names a library kernel, a shipped scene, or an existing file.
 
-    Files with the suffixes EMITTED, such as .c, are refused: they are no scene files.
+    Files with the suffixes EMITTED, such as .c, are refused, because they are not scene files.
     """
     path = Path(kernel)
     if is_kernel(kernel) or kernel in shipped_names() or (path.exists() and path.suffix not in EMITTED):
@@ -137,7 +137,9 @@ def _in_scene_names(kernel: KernelText) -> Iterator[None]:
 
 
 def facts(kernel: str, ranges: Sequence[str], precision: str) -> dict[str, Any]:
-    """Return the bounds of a kernel's rounding errors on its box, with the user's ranges, as plain data for JSON.
+    """Return bounds of a kernel's rounding errors on a box of inputs, as plain data for JSON.
+
+    The box has a range for each input: the user's range or, if the user gives none, the kernel's own range.
 
     Parameters
     ----------

@@ -74,11 +74,11 @@ class Certificate:
 
     @property
     def bits_unproven(self) -> bool:
-        """Whether :func:`certify` compared object code and did not prove that it computes the bits of the C text.
+        """Whether :func:`certify` compared object code without proving that it computes the same bits as the C text.
 
-        Only code compiled with flags under which a compiler must keep every bit of the results, such as
-        ``-ffp-contract=off``, counts; if no such code was compared, the proof is missing. The value is False if this
-        call of :func:`certify` compared no code.
+        The proof is about strict code: code compiled with flags that forbid a compiler to change any bit of a result,
+        such as ``-ffp-contract=off``. The value is True if strict code differs from the C text, or if object code was
+        compared but none of it is strict. It is False if this call of :func:`certify` compared no object code.
         """
         return self.objects_compared and certificates.lacks_proof_of_bits([dict(self.data)])
 

@@ -336,8 +336,9 @@ def all_lines(certificates: Mapping[str, Data]) -> list[str]:
 def lacks_proof_of_bits(certificates: Iterable[Data]) -> bool:
     """Return whether one of the certificates has a section on object code that lacks the proof of equal bits.
 
-    The proof says that the object code computes the same bits as the C text. Only code compiled with flags under which
-    a compiler must keep every bit of the results counts; a section without such code lacks the proof.
+    The proof says that strict code computes the same bits as the C text. Strict code is object code compiled with flags
+    that forbid a compiler to change any bit of a result. A section lacks the proof if it is about no strict code, or if
+    strict code differs from the C text. Certificates without a section on object code do not count.
     """
     return any(data.get("objects") and not object_code.holds(data["objects"]) for data in certificates)
 

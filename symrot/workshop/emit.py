@@ -162,10 +162,10 @@ def emit(
         :func:`symrot.workshop.bounds.section`. They are stated in the head comment of its C text and in its
         certificate. A library kernel needs none: it states the bounds on its own box.
     jacobian : sequence of str
-        Inputs by which the derivatives of all outputs are computed too, in the order in which they are printed: names
-        of arguments (``"omega"``) or of single components (``"omega_1"``). For a scene: ``"y"``, ``"omega"``, ``"q"``,
-        a state, or a physical constant such as ``"A"``. The derivatives of ``dy`` by ``omega`` are the output
-        ``dy_by_omega``, row by row: one row for each component of ``dy``.
+        Inputs with respect to which the kernel also differentiates all outputs, in the order in which the derivatives
+        are printed: names of arguments (``"omega"``) or of single components (``"omega_1"``). For a scene: ``"y"``,
+        ``"omega"``, ``"q"``, a state, or a physical constant such as ``"A"``. The derivatives of ``dy`` with respect to
+        ``omega`` are the output ``dy_by_omega``, row by row: one row for each component of ``dy``.
     step : str, optional
         ``"rk4"``, ``"taylor"``, ``"dop853"`` or ``"exact"``: emit one time step of a scene instead of its rates, the
         function ``next = f(t, x, p, dt)``, with C files for double and float and a test against known values.

@@ -21,8 +21,8 @@ FORM = "expected NAME=LOW:HIGH, such as theta=-1.4:1.4"
 def input_box(kernel_problem: RoundingProblem, inputs: SceneInputs | None, ranges: Sequence[str]) -> dict[str, Ends]:
     """Return the box of a kernel: for each input the user's range or, if the user gives none, the kernel's own range.
 
-    An input without either is not in the box. From a range of a constant follow the ranges of the parameters that
-    depend on the constant.
+    An input without either is not in the box. If the user gives a range of a physical constant, the ranges of the
+    parameters that depend on this constant are computed from it.
 
     Parameters
     ----------

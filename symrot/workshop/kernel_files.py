@@ -196,7 +196,8 @@ def write_files(directory: Path, files: Mapping[str, str]) -> list[Path]:
 def write_all(directory: Path, targets: Sequence[str], progress: Callable[[str], object]) -> list[Path]:
     """Write the files of all kernels, of the library and of shipped scenes; return the changed paths.
 
-    Files of kernels that symrot no longer has are deleted; their paths are returned too.
+    ``targets`` are the languages of the kernels, such as ``"c"`` and ``"numpy"``; each has a folder of its name in
+    ``directory``. Files of kernels that symrot no longer has are deleted; their paths are returned too.
     """
     files = _all_files(targets, directory, progress)
     changed = write_files(directory, files)
@@ -209,6 +210,8 @@ def write_all(directory: Path, targets: Sequence[str], progress: Callable[[str],
 
 def stale(directory: Path, targets: Sequence[str], progress: Callable[[str], object]) -> list[str]:
     """Return a unified diff, as lines, between the kernels in a folder and newly emitted ones; empty if equal.
+
+    ``targets`` are the languages that are compared, such as ``"c"`` and ``"numpy"``.
 
     Raises
     ------

@@ -190,7 +190,7 @@ class SceneText(KernelText):
     scene : Scene
         A scene whose torques are all formulas; InputError is raised for another torque, or if no state is integrated.
     jacobian : sequence of str
-        States and constants by which the derivatives of the rates are computed too.
+        States and constants with respect to which the kernel also differentiates the rates.
     """
 
     # the equations are derived when the object is made, once for all its texts
@@ -213,7 +213,10 @@ class SceneText(KernelText):
 
     @cached_property
     def _formulas(self) -> tuple[Formulas, tuple[Argument, ...]]:
-        """The pair (formulas, output arrays) of the rates ``dy/dt`` and of their derivatives by ``jacobian``."""
+        """The pair (formulas, output arrays) of the rates ``dy/dt`` and of their derivatives.
+
+        ``jacobian`` names the states and constants with respect to which the rates are differentiated.
+        """
         try:
             return rate_derivatives(self._equations, self.jacobian)
         except InputError as reason:
@@ -267,14 +270,14 @@ class SceneText(KernelText):
 
     @property
     def parameter_values(self) -> tuple[float, ...]:
-        """The values of the argument ``p`` in the scene."""
+        """The scene's values of the kernel's parameters, which the emitted function takes as the array ``p``."""
         return tuple(self.inputs.parameters)
 
 
 def kernel_text(kernel: KernelText | SceneSource, jacobian: Sequence[str] = ()) -> KernelText:
     """Return the object that prints all texts of a kernel, of the library or of a scene.
 
-    ``jacobian`` names the inputs by which the outputs are differentiated too.
+    ``jacobian`` names the inputs with respect to which the kernel also differentiates its outputs.
     """
     if isinstance(kernel, KernelText):
         return kernel
@@ -297,7 +300,10 @@ def _library_text(name: str) -> LibraryText:
 
 
 def scene_text(scene: SceneSource, jacobian: Sequence[str] = ()) -> SceneText:
-    """Return the texts of a scene's kernel: the rates ``dy/dt`` of its motion, and derivatives by ``jacobian``."""
+    """Return the texts of a scene's kernel, which computes the rates ``dy/dt`` of its motion.
+
+    It also computes their derivatives with respect to the states and constants that ``jacobian`` names.
+    """
     return SceneText(load_scene(scene), jacobian)
 
 

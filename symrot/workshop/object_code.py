@@ -56,9 +56,9 @@ def objects_of(texts: Mapping[str, str], source: str, programs: str) -> Data:
 def holds(section: Data | None) -> bool:
     """Return whether the object code in a certificate is proven to compute the same bits as the C text.
 
-    ``section`` is the section ``objects`` of the certificate, or None. Only code compiled with flags under which
-    a compiler must keep every bit of the results, such as ``-ffp-contract=off``, counts; without such code, return
-    False.
+    ``section`` is the section ``objects`` of the certificate, or None. The proof is about strict code: code compiled
+    with flags that forbid a compiler to change any bit of a result, such as ``-ffp-contract=off``. Return False if the
+    section is about no strict code.
     """
     strict = [item for item in _objects(section) if item["flags_hold"] == BITS]
     return bool(strict) and all(function["verdict"] == IDENTICAL for item in strict for function in item["functions"])
@@ -75,8 +75,11 @@ def lines(section: Data | None) -> list[str]:
 
 
 def table(sections: Mapping[str, Data | None]) -> list[str]:
-    """Return lines of text: how many kernels are accepted for each compiler and flags, and each rejected kernel."""
-    # a kernel is accepted if its object code performs the operations of its C text
+    """Return lines of text: for each compiler with its flags, how many kernels are accepted and which are rejected.
+
+    A kernel is accepted if its object code performs the operations of its C text. ``sections`` maps the name of each
+    kernel to the section ``objects`` of its certificate, or to None if its object code was not compared.
+    """
     by_flags: dict[str, dict[str, Data]] = {}
     for name, section in sections.items():
         for item in _objects(section):
@@ -89,16 +92,24 @@ def table(sections: Mapping[str, Data | None]) -> list[str]:
 
 
 def object_lines(text: str, path: Path, where: str) -> list[str]:
-    """Return a line for each function in the object file ``path`` that performs the operations of the C text.
+    """Check that an object file performs the operations of its C text; return one line for each function.
 
     One more line says that loops over samples (``*_batch``) are not compared.
+
+    Parameters
+    ----------
+    text : str
+        The C text.
+    path : Path
+        The object file.
+    where : str
+        The name of the C file, for messages.
 
     Raises
     ------
     CertificateError
         If a function differs; the message names the first such function and the difference.
     """
-    # ``where`` is the name of the C file
     verdicts = compare_object(text, path, where=where)
     refused = [verdict for verdict in verdicts if not verdict.accepted]
     if refused:

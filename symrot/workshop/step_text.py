@@ -71,7 +71,8 @@ def step_method(name: str, order: int | None = None, jacobian: Sequence[str] = (
     order : int, optional
         Order of the Taylor series, 1 to 16; default 8.
     jacobian : sequence of str
-        Inputs by which the step is differentiated too, see :class:`symrot.codegen.steps.WithDerivatives`.
+        Inputs with respect to which the step is also differentiated, see
+        :class:`symrot.codegen.steps.WithDerivatives`.
 
     Raises
     ------
@@ -97,7 +98,7 @@ def step_text(scene: SceneSource, step: str, order: int | None = None, jacobian:
         raise InputError(f"step: expected a scene, because only a motion has steps, got the kernel {scene!r}")
     if step == "exact":
         return _exact(load_scene(scene), order, jacobian)
-    # ``order`` is that of a Taylor series; ``jacobian`` names the inputs by which the step is differentiated too
+    # ``order`` is the order of a Taylor series; ``jacobian`` names the inputs for derivatives of the step
     text = StepText(load_scene(scene), step_method(step, order, jacobian))
     for name in jacobian:
         derivative_inputs(text.rates.program, name)
@@ -118,8 +119,8 @@ def _exact(scene: Scene, order: int | None, jacobian: Sequence[str]) -> KernelTe
 def _steady_rotations(scene: Scene) -> SteadyRotations | None:
     """Return the closed form of a scene's motion if its attitude is a product of steady rotations, otherwise None.
 
-    It is known for free spheres and symmetric bodies given along principal axes, also with one rotor along the symmetry
-    axis.
+    It is known for a free sphere or symmetric body, also with one rotor along the symmetry axis, if the inertia tensor
+    that the scene gives is diagonal (the body axes are principal axes).
     """
     kinds, principal = [torque.kind for torque in scene.torques], scene.body.principal
     if not principal.given_axes or kinds not in ([], ["rotor"]):
@@ -227,7 +228,7 @@ class StepText(StepFiles):
     def certificate(self, bounds: Bounds | None = None) -> str:
         """Return the text of the certificate, without bounds of errors; ``bounds`` is not used.
 
-        CertificateError is raised if the C text does not compute the method.
+        CertificateError is raised if the C text does not compute the formulas of the integration method.
         """
         return step_certificate(self.certified)
 

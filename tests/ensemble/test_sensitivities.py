@@ -37,7 +37,7 @@ ATTITUDES = np.array([[1.0, 2, 0, 0], [1, 0, 0, 0], [3, 1, 2, 1]])
 
 @pytest.fixture(scope="module")
 def tops():
-    """Three tops of different weights, differentiated by a rate and by the weight."""
+    """Three tops of different weights, differentiated with respect to a rate and the weight."""
     return symrot.propagate_ensemble(
         TOP, omega=OMEGA, quaternion=ATTITUDES, parameters={"weight": WEIGHTS}, sensitivities=KEYS
     )
@@ -77,7 +77,7 @@ def test_derivatives_do_not_depend_on_the_other_motions(tops):
 
 @needs_compiler
 def test_derivatives_under_a_short_pulse_are_those_of_single_motions():
-    """The pulse lasts 0.1 s; a step that misses it leaves all derivatives by k zero."""
+    """The pulse lasts 0.1 s; a step that misses it leaves all derivatives with respect to k zero."""
     ensemble = symrot.propagate_ensemble(DRIVEN, omega=OMEGA[:2], sensitivities=["k"])
     single = symrot.propagate(DRIVEN, omega=OMEGA[1], sensitivities=["k"])
     agree(ensemble[1].sensitivities, single.sensitivities)

@@ -169,7 +169,7 @@ def _scene_program(scene: str, variables: list[str]) -> tuple[Program, list[floa
 @pytest.mark.thinned(2)
 @pytest.mark.parametrize("scene", ["heavy_top_loops", "gravity_gradient_satellite", "damped_disk", "gyrostat"])
 def test_derivatives_of_rates_by_all_states_are_complex_steps(scene):
-    """The derivatives of a scene's rates by its states equal Im f(y + i h)/h."""
+    """The derivatives of a scene's rates with respect to its states equal Im f(y + i h)/h."""
     program, parameters = _scene_program(scene, ["y"])
     (y,) = (a for a in program.signature.arguments if a.name == "y")
     draw = np.random.default_rng(3)
@@ -188,7 +188,7 @@ def test_derivatives_of_rates_by_all_states_are_complex_steps(scene):
 @pytest.mark.parametrize(("scene", "constant"), [("heavy_top_loops", "weight"), ("heavy_top_loops", "A"),
                                                  ("tumbling_prism", "B")])  # fmt: skip
 def test_derivatives_of_rates_by_constants_are_exact_differences(scene, constant):
-    """A derivative by a constant equals the difference of the rates of two scenes whose constants differ."""
+    """A derivative with respect to a constant equals a difference quotient of the rates of two scenes."""
     from fractions import Fraction
 
     from symrot.formula.exact_functions import EXACT_FUNCTIONS

@@ -1,4 +1,4 @@
-"""Derivatives of motions by initial values and constants, against motions of 50 digits, and their way into results."""
+"""Derivatives of motions with respect to initial values and constants: against motions of 50 digits, and in results."""
 
 import pickle
 from fractions import Fraction
@@ -127,7 +127,7 @@ def motion(omega, q, moments, weight, center, damping, duration, dry=0):
 
 
 def reference(scene, change, duration):
-    """Return the derivatives of omega, of the quaternion and of the small rotation by what ``change`` changes."""
+    """Return the derivatives of omega, quaternion and small rotation with respect to what ``change`` changes."""
     heavy, *damped = scene.torques
     dry = fixed(damped[1].number("k")) if len(damped) > 1 else 0
     ends = []

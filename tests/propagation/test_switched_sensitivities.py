@@ -40,7 +40,7 @@ def test_derivatives_by_the_times_of_a_thruster_pulse():
     }
     for name, values in expected.items():
         assert np.allclose(column(motion, name), values, rtol=1e-14, atol=0)
-    # exactly at the switch the derivative by its time jumps, and has no value
+    # exactly at the switch the derivative with respect to its time jumps, and has no value
     assert np.isnan(column(motion, "b", 1)).all() and np.isfinite(column(motion, "k", 1)).all()
     ended = symrot.propagate(content, t=[0, b], sensitivities=["a", "b", "k", "I_zz"])
     assert np.array_equal(ended.sensitivities.omega[-1], motion.sensitivities.omega[1], equal_nan=True)
@@ -165,7 +165,7 @@ def test_dry_friction_and_quadratic_damping_stop_a_wheel():
     (stop,) = motion.sensitivities.switchings
     time = 4 / np.sqrt(2) * np.arctan(np.sqrt(2))
     assert abs(stop.t / time - 1) < 1e-13
-    # the derivative by k: that of C/sqrt(k c), then that of the arc tangent
+    # the derivative with respect to k: that of C/sqrt(k c), then that of the arc tangent
     by_k = -time / 2 - 4 / (2 * 3)
     assert np.allclose(stop.slopes, [4 / 3, by_k], rtol=1e-12, atol=0)
     assert not motion.sensitivities.omega[0, 2].any()

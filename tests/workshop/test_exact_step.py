@@ -325,7 +325,7 @@ def test_boxes_without_bounds_are_refused(monkeypatch, scene, box, message):
     ("content", "axis"), [(SYMMETRIC, 1), (GYROSTAT, 2), (SPHERE_WITH_ROTOR, 3), (PLANAR, 3), (SPHERE, None)]
 )
 def test_the_certificate_proves_that_the_step_is_the_motion(content, axis):
-    """In double and in float: with a start x, the step of size 0 is x, and the derivative by dt is the rates."""
+    """In double and float: from a start x, the step of size 0 is x; its derivative with respect to dt is the rates."""
     data = json.loads(step_text(scene_of(content), "exact").certificate())
     assert data["step"] == {"method": "exact", "axis": axis}
     proofs = [function["motion"] for function in data["formula"].values()]

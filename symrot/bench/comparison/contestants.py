@@ -60,8 +60,9 @@ class Contestant(NamedTuple):
 
 
 def _exact(problem: Problem, tolerance: float) -> Run:
-    """Return the timed function for the closed form: from an end time, s, to (state, 0), since a closed form takes no
-    steps.
+    """Return the function whose run time is measured for the closed form.
+
+    It takes an end time, s, and returns (state, 0): a closed form takes no steps and ignores ``tolerance``.
     """
     form, attitude = exact_form(problem.scene), len(problem.names) > 3
     assert form is not None

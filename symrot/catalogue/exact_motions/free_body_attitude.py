@@ -35,7 +35,7 @@ def derive() -> Derivation:
             "the moments."
         ),
     )
-    _two_turns(d)
+    _two_rotations(d)
     _special(d)
     turning = _momentum(d)
     _third_kind(d, turning)
@@ -43,7 +43,7 @@ def derive() -> Derivation:
     return d
 
 
-def smallest_turn() -> Matrix:
+def smallest_rotation() -> Matrix:
     """Return the rotation by the smallest angle that takes the angular momentum to axis 3 of space."""
     return Matrix(
         [
@@ -54,28 +54,29 @@ def smallest_turn() -> Matrix:
     )
 
 
-def turning_rate() -> Expr:
-    """Return the rate of rotation about the angular momentum, rad/s.
+def rotation_rate() -> Expr:
+    """Return the rate of the angle psi of the rotation about the angular momentum, rad/s.
 
-    The attitude of a free body is this rotation times :func:`smallest_turn`.
+    The attitude of a free body is a product of two rotations: the smallest rotation that takes the angular momentum to
+    axis 3 of space (:func:`smallest_rotation`), followed by the rotation by psi about this axis.
     """
     return (2 * T + H * L3 / C) / (H + L3)
 
 
-def _two_turns(d: Derivation) -> None:
+def _two_rotations(d: Derivation) -> None:
     d.section("Two rotations")
     d.passage(
         "Let axis 3 of space be along the angular momentum. The angular momentum has the length $H$ and the body "
         r"components $L_1, L_2, L_3$, with $\omega = I^{-1} L$ and moments $A, B, C$ in any order. The attitude is "
         r"the smallest rotation $P$ that takes $L$ to axis 3, followed by a rotation by $\psi$ about axis 3:",
         ("R", r"R_3(\psi)\,P"),
-        ("P", smallest_turn()),
+        ("P", smallest_rotation()),
     )
-    smallest = smallest_turn()
+    smallest = smallest_rotation()
     about = Matrix([[cos(PSI), -sin(PSI), 0], [sin(PSI), cos(PSI), 0], [0, 0, 1]])
     along = pairs(symbols.momentum_b, MOMENTUM.cross(OMEGA))
     energy = MOMENTUM.dot(OMEGA) / 2
-    speed = turning_rate().subs(T, energy)
+    speed = rotation_rate().subs(T, energy)
     d.notation(
         {"H": H, "L": MOMENTUM, r"\omega": OMEGA, "e_3": Matrix([0, 0, 1]), "P": smallest, "R": about * smallest}
         | {rf"\omega_{n + 1}": OMEGA[n] for n in range(3)}
@@ -122,10 +123,10 @@ def _two_turns(d: Derivation) -> None:
         named=r"\frac{d}{dt} \left( R_3(\psi)\,P \right)",
         display=r"R\,[\omega]_\times",
     )
-    d.notation({"T": T, r"\dot\psi": turning_rate()})
+    d.notation({"T": T, r"\dot\psi": rotation_rate()})
     d.step(
         r"The rate of $\psi$ is the sum of a constant and a part that depends only on $L_3$.",
-        turning_rate(),
+        rotation_rate(),
         H / C + (2 * T - H**2 / C) / (H + L3),
         because=r"$\omega_3 = L_3 / C$, and $\frac{H}{C} (H + L_3)$ is split off from the numerator",
         named=r"\dot\psi",
@@ -254,7 +255,7 @@ def _third_kind(d: Derivation, constants: dict[str, Expr]) -> None:
     below = 1 + MU * THREE**2 / ONE**2 * SN**2
     d.notation({"p": symbols.p, r"\mu": MU, r"\ell_2": TWO, r"\Delta": below})
     energy = (SIGN * symbols.p * ONE * TWO / THREE + H**2 / C) / 2
-    rate_of_turn = turning_rate().subs({T: energy, L3: THREE * DN})
+    rate_of_turn = rotation_rate().subs({T: energy, L3: THREE * DN})
     d.notation({r"\dot\psi": rate_of_turn})
     d.step(
         r"Hence the rate of $\psi$, expressed with $\ell_2$ and $p$, is:",
@@ -339,7 +340,7 @@ def _special(d: Derivation) -> None:
     d.section("Equal moments")
     d.notation({"L_3": L3, "H": H})
     energy = MOMENTUM.dot(OMEGA) / 2
-    speed = turning_rate().subs(T, energy)
+    speed = rotation_rate().subs(T, energy)
     d.notation({r"\dot\psi": speed, r"\dot L": MOMENTUM.cross(OMEGA)})
     d.step(
         r"If $B = A$, the third component of $L$ is constant, and $\psi$ grows at a constant rate. This is [regular "

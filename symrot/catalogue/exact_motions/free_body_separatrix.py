@@ -3,7 +3,7 @@
 from sympy import Expr, Integer, Matrix, Rational, Symbol, atan, cos, diag, sin, tanh
 
 from symrot import symbols
-from symrot.catalogue.exact_motions.free_body_attitude import T, smallest_turn, turning_rate
+from symrot.catalogue.exact_motions.free_body_attitude import T, rotation_rate, smallest_rotation
 from symrot.catalogue.tools.motion import pairs, rate, squared
 from symrot.kinematics.rotations import skew
 from symrot.proof.derivation import Derivation
@@ -110,7 +110,7 @@ def _attitude(d: Derivation, momentum: Matrix, omega: Matrix) -> None:
     d.section("The attitude")
     h = HALF_TANH
     values = pairs(symbols.momentum_b, momentum)
-    speed = turning_rate().subs(T, momentum.dot(omega) / 2).subs(values)
+    speed = rotation_rate().subs(T, momentum.dot(omega) / 2).subs(values)
     about = Matrix([[cos(PSI), -sin(PSI), 0], [sin(PSI), cos(PSI), 0], [0, 0, 1]])
     d.notation(
         {"T": momentum.dot(omega) / 2, "L_1": momentum[0], "L_3": momentum[2], r"\omega_3": omega[2], r"\sigma": SIGN}
@@ -136,7 +136,7 @@ def _attitude(d: Derivation, momentum: Matrix, omega: Matrix) -> None:
         named=r"\frac{d}{dt} \left( \frac{H}{B}\,t - 2 \sigma \arctan \frac{\ell_1\,h}{H + \ell_3} \right)",
         display=r"\frac{H}{B} - \sigma\,p\,\frac{L_1}{H + L_3}",
     )
-    rotation = about * smallest_turn().subs(values)
+    rotation = about * smallest_rotation().subs(values)
     d.notation(
         {"R": rotation, "p": SPEED}, _share(SPEED) | {PSI: H / MIDDLE - SIGN * SPEED * momentum[0] / (H + momentum[2])}
     )

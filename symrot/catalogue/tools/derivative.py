@@ -1,4 +1,4 @@
-"""Derivatives by one symbol, in the form that SymPy gives them, in less time."""
+"""Derivatives with respect to one symbol, in the form that SymPy gives them, in less time."""
 
 from functools import lru_cache
 

@@ -43,10 +43,12 @@ def _waves(cosines: int, sines: int) -> tuple[tuple[int, Expr, Expr], ...]:
 def antiderivative(integrand: Expr, variable: Symbol) -> Expr:
     """Return an antiderivative of a polynomial in the variable, or in the cosine and sine of the variable.
 
+    Its derivative is proven to be the integrand.
+
     Raises
     ------
     ProofError
-        If the integrand is neither of the two: the derivative of the result must be the integrand.
+        If the integrand is not such a polynomial.
     """
     total: Expr = Integer(0)
     try:

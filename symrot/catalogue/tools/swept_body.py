@@ -1,7 +1,10 @@
 """Formulas for a body swept through resonance: recurrences of series, and phases without cancellation.
 
-Such a body rotates at a linearly growing rate Omega about its axis, and at a constant rate W about an axis normal to
-this axis. Resonance is the time at which Omega is zero. The phase is the integral of ``sqrt(Omega^2 + W^2)``.
+Such a symmetric body is driven by a constant torque about its axis. The rotating axes rotate with its transverse
+angular velocity, whose length W is constant; their third axis is the axis of the body. Their own angular velocity is
+``(W, 0, Omega)`` along themselves, where the axial rate Omega grows linearly, at the sweep rate s. Resonance is the
+time at which Omega is zero. The phase is the integral of ``sqrt(Omega^2 + W^2)``. Divided by sqrt(s), the angular
+velocity is ``(kappa, 0, x)``, and its length is r; x is also the time after resonance in units of 1/sqrt(s).
 """
 
 from sympy import Expr, Matrix, Rational, S, Symbol, sqrt
@@ -20,9 +23,9 @@ V, X, R, KAPPA = Symbol("v"), Symbol("x"), Symbol("r"), Symbol("kappa")
 def far(d: Derivation) -> None:
     """Add steps to the derivation ``d``: recurrences for the power series that are used far from resonance.
 
-    Far from resonance, the linearly growing rate Omega about the axis of the body is far from zero. The series give a
-    vector that is fixed in space, and a small angle: the angle of rotation about this vector minus the phase, which is
-    the integral of ``sqrt(Omega^2 + W^2)`` with the constant rate W about an axis normal to the body's axis.
+    Far from resonance, the axial rate Omega is far from zero. The rotating axes then rotate about a vector that is
+    fixed in space. Their angle of rotation about this vector is the phase, the integral of ``sqrt(Omega^2 + W^2)``,
+    plus a small angle. Some of the series give this vector, the others the small angle.
     """
     d.section("The coefficients far from resonance")
     _vector(d)
@@ -171,9 +174,8 @@ def near(d: Derivation) -> None:
 def weak(d: Derivation) -> None:
     """Add steps to the derivation ``d``: under a weak torque the phase, an angle in rad, is a power series in time.
 
-    The phase is the integral of ``sqrt(Omega^2 + W^2)`` since the start, with the linearly growing rate Omega about the
-    axis of the body and the constant rate W about an axis normal to it. The torque is weak if it changes Omega by a
-    small part of this root.
+    The phase is the integral of ``sqrt(Omega^2 + W^2)`` since the start, with the axial rate Omega, which grows
+    linearly, and the constant transverse rate W. The torque is weak if it changes Omega by a small part of this root.
     """
     d.section("A weak torque")
     h, c = Symbol("h"), Symbol("c")
@@ -264,8 +266,8 @@ def _by_legendre(c: Expr) -> dict[Symbol, Expr]:
 def between(d: Derivation) -> None:
     """Add steps to the derivation ``d``: a formula for the integral of ``sqrt(Omega^2 + W^2)`` between two times.
 
-    Omega is the linearly growing rate about the axis of the body, and W the constant rate about an axis normal to it.
-    The formula is a sum of two positive terms, so no digits cancel.
+    Omega is the axial rate, which grows linearly, and W the constant transverse rate. The formula is a sum of two
+    positive terms, so no digits cancel.
     """
     d.section("Between two times")
     omega, start, speed, there, across = (Symbol(name) for name in ("Omega", "Omega_0", "S", "S_0", "W"))

@@ -32,7 +32,7 @@ LIBM_ULP = 1.0  # error of sin, cos and atan2, in units in the last place of the
 
 # Let the operations 1 to k be rounded and the others exact. As k grows from 0 to the number of operations, the output
 # moves from its exact to its computed value. By the mean value theorem,
-#     computed - exact = sum over operations of (derivative of the output by the result) * (its rounding error),
+#     computed - exact = sum over operations of d(output)/d(result of the operation) * (its rounding error),
 # with derivatives between exact and computed values, where each operation acts on computed operands. Conditionals
 # compare computed numbers, so the condition of a branch narrows the intervals of computed numbers, which give the
 # rounding errors, but not the intervals in which derivatives are evaluated.
@@ -328,7 +328,7 @@ FORWARD: dict[str, Forward] = {
     "norm": _norm, "sinc": _sinc, "arc_ratio": _arc_ratio, "gap": _gap, "select": _choice,
 }  # fmt: skip
 
-# --- backward: the derivative of the output by each operand of a node, from its derivative by that node ---------------
+# --- backward: from d(output)/d(node), the derivatives of the output with respect to the node's operands --------------
 
 _multiply = intervals.multiply_loosely
 

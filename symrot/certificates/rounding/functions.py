@@ -228,7 +228,7 @@ def _slope_at(a: Array, b: Array) -> Array:
 
 
 def arc_ratio_terms(s: Array, c: Array, radius: Array) -> tuple[Array, Array, Array]:
-    """Return intervals of atan2(s, c)/s and of its derivatives by s and by c, for s, c >= 0, not both 0.
+    """Return intervals of atan2(s, c)/s and of its derivatives with respect to s and c, for s, c >= 0, not both 0.
 
     ``radius`` has intervals of sqrt(s^2 + c^2).
     """

@@ -31,7 +31,7 @@ class PowerSeries:
 
     @property
     def rates(self) -> list[Any]:
-        """The coefficients of the derivative of the series by h; it has one coefficient fewer than the series."""
+        """The coefficients of the derivative with respect to h; there is one fewer than in the series."""
         return [(k + 1) * self.terms[k + 1] for k in range(len(self.terms) - 1)]
 
     def __add__(self, other: Any) -> Self:

@@ -319,7 +319,8 @@ def _has_own_letters(letters: Sequence[set[tuple[str, bool]]]) -> bool:
 def _depends_on_own_letters(claim: Claim) -> bool:
     """Return whether each side depends on a letter that the other side lacks, as in ``m*a == k*x``.
 
-    False for ``x*cos(a) == x*cos(b)``, where b may be a misprint.
+    The exception is a pair of sides that become equal if one letter is replaced, as ``x*cos(a) == x*cos(b)`` with a for
+    b: False, because one of the letters is probably a misprint.
     """
     try:
         sides = [list(map(normal_form, flatten(side)[0])) for side in (claim.equation.left, claim.equation.right)]

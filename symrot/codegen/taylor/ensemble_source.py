@@ -116,9 +116,10 @@ class _Jet:
         self.divided = [i for i, s in enumerate(self.series) if s.rule in ("quotient", "root", "primitive")]
 
     def _make_slots(self) -> None:
-        """Assign each convolution to a slot, which holds one convolution or a sum of several.
+        """Fill ``slots``: the sums of convolutions, each the series of one product, that C adds up in one variable.
 
-        Products that occur with equal weights in the same sums share a slot.
+        If several products occur only together, with the same weights in the same sums, C needs their sum alone: their
+        convolutions share a slot. Every other convolution gets a slot of its own.
         """
         uses: dict[int, list[tuple[int, Node, int]]] = {}
         own: set[int] = set()
@@ -378,9 +379,9 @@ class _Jet:
         return groups
 
     def _load(self, group: Sequence[int]) -> int:
-        """Return the number of registers that a C loop needs for ``group``, a list of indices of slots.
+        """Return the number of registers that a C loop needs to add up the slots (sums of convolutions) ``group``.
 
-        A slot is a sum of convolutions.
+        ``group`` has their indices in ``slots``.
         """
         terms = [c for i in group for _, c in self.slots[i].terms]
         # two sums of each slot, the values of each series u for two k, and one value of each series v

@@ -117,7 +117,10 @@ def _parts(answer: str, question: Question) -> tuple[str, str]:
 
 
 def _require_right(left: str, question: Question) -> None:
-    """Raise InputError unless the left side of a student's equation, which is no name, equals the right formula."""
+    """Raise InputError unless the formula on the left side of a student's equation equals the correct answer.
+
+    It is called for a left side that is more than a name of the asked quantity, as in ``2 m L^2/6 = m L^2/3``.
+    """
     try:
         is_right = _is_right(_verdict(*_sides(left, question), question, repair=False))
     except InputError:
@@ -165,7 +168,10 @@ def _plain(text: str) -> str:
 
 
 def _chain(match: re.Match[str]) -> str:
-    """Return a divisor of names that were written together in brackets: ``/Cω`` divides by both, as ``/mgl`` does."""
+    """Return the divisor ``/(C*omega)`` for ``/Cω``: names that are written together after ``/`` all divide.
+
+    ``match`` is a match of ``_CHAIN``. If one of the names is a function, as in ``/cosθ``, the text is not changed.
+    """
     names = match[1].split(JOIN)
     return match[0] if any(name in FUNCTIONS for name in names) else f"/({'*'.join(names)}{match[2] or ''})"
 

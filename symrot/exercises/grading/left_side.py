@@ -11,7 +11,10 @@ _DECORATION = re.compile(
     r"\\(?:d?dot|vec|hat|bar|mathrm|text|operatorname|left|right|[,;:! ])|\$|[-_ ]?dot\b"
     r"|(?:\\[dt]?frac)?\{?(?<![^\W\d_])d(?:²|\^\{?2\}?)?\s*\\?[^\W\d_][\w\\{}]*\s*(?:/|\}\s*\{)\s*d\s*t(?:²|\^\{?2\}?|\b)\}?"
 )
-"""Pattern of the parts of a name that are no operation, such as a dot, and of a derivative such as dphi/dt."""
+"""Pattern of dots, hats, brackets and the like that belong to a name, and of a derivative such as dphi/dt.
+
+Neither counts as an operation: dphi/dt is a name of a quantity, although it contains a slash.
+"""
 
 _INDEX = re.compile(r"(?<=\w)(?:[(\[]\d(?:,\s*\d)?[)\]])+|_\{[^{}]*\}|_?(?<=[^\W\d])\d+|_\d+")
 _OPERATIONS = re.compile(
@@ -23,25 +26,30 @@ _MULTIPLE = re.compile(
 
 
 def names_only(left: str, name: str, symbols: Collection[str]) -> bool:
-    """Return whether the left side of an equation has no operation that the name of the asked quantity has not.
+    """Return whether the left side of an equation is only a name, such as that of the asked quantity.
 
-    ``I_O`` and ``I`` are names of ``I_O``, but ``2 I_O`` and ``1/I_O`` are not. ``symbols`` are the given quantities,
-    of which none is asked for.
+    It may contain operations that occur in ``name``, the name of the asked quantity, such as the square in ``d^2``, but
+    no others: ``I_O`` and ``I`` are names for ``I_O``, but ``2 I_O`` and ``1/I_O`` are not. A given quantity, one of
+    ``symbols``, is not accepted.
     """
     return left not in symbols and set(_operations(left)) <= set(_operations(name))
 
 
 def _operations(text: str) -> Iterator[str]:
-    """Yield the operations in a name, with one word for all numbers and one for the two ways to write a quotient."""
+    """Yield the operations in a typed or LaTeX text, such as ``"+"`` and ``"sin"``, and ``"number"`` for each number.
+
+    Both ways to write a quotient give ``"/"``. Indices of names, dots and derivatives such as dphi/dt do not count.
+    """
     plain = _INDEX.sub("", _DECORATION.sub(" ", text))
     for match in _OPERATIONS.findall(plain):
         yield "number" if match.isdecimal() else "/" if "frac" in match else "^" if match in "²³" else match
 
 
 def is_multiple(left: str, name: str, symbols: Collection[str]) -> bool:
-    """Return whether a left side is a multiple or a power of one name that is no given quantity: ``2 I`` or ``1/I``.
+    """Return whether a left side is a multiple, the reciprocal or a power of an unknown: ``2 I``, ``1/I`` or ``I^2``.
 
-    A number with a unit, as in ``60 rpm = 6.283 rad/s``, is none, and neither is ``name``, the asked quantity itself.
+    An unknown is a name other than the given quantities, ``symbols``. The result is False for a number with a unit, as
+    in ``60 rpm = 6.283 rad/s``, and for a name alone, such as ``name``, the name of the asked quantity.
     """
     match = _MULTIPLE.fullmatch(_DECORATION.sub(" ", left).strip())
     if match is None or names_only(left, name, ()):

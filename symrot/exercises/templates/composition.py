@@ -67,7 +67,7 @@ def angle_of_two_rotations(random: Random) -> Problem:
 
 
 def order_matters(random: Random) -> Problem:
-    """Return a problem that asks how far apart a pointer ends if two rotations are applied in either order."""
+    """Return a problem that asks how far apart the end positions of a pointer are for two orders of two rotations."""
     one, two = random.sample(AXES, 2)
     pointer = Matrix([int(axis == one) for axis in AXES])
     first = elementary_rotation(two, theta) * elementary_rotation(one, phi) * pointer

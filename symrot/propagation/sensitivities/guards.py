@@ -115,9 +115,10 @@ class Guards:
         return self._by_name[mode].label
 
     def is_floor(self, mode: str) -> bool:
-        """Return whether a function is floor or mod; ``mode`` names the number that replaces it in formulas.
+        """Return whether a function is floor(x) or mod(x, y), which is computed from floor(x/y).
 
-        A function floor(x) with the present value n switches where x - n is 0 or 1.
+        ``mode`` is the name of the number that replaces the function in formulas. A function floor(x) whose present
+        value is n switches where x - n is 0 or 1.
         """
         return self._by_name[mode].kind == "floor"
 

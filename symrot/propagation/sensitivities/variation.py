@@ -60,8 +60,8 @@ TRIES = 4
 # ------------------------------------------------------------------------------------------------ columns
 
 
-# The equations assume nothing about numbers that a variable can change: a derivative by a moment of inertia needs the
-# equations of a body without symmetry.
+# The equations assume nothing about numbers that a variable can change: the derivative with respect to a moment of
+# inertia needs the equations of a body without symmetry.
 class Column:
     """The dependence of a scene on one variable, an initial value or a constant.
 
@@ -83,7 +83,7 @@ class Column:
 
     def start_from(self, initial: Initial) -> list[float]:
         """Return the 7 derivatives of an initial state, omega and quaternion, with respect to :attr:`variable`."""
-        # only those by a small rotation of the attitude depend on the initial state
+        # only the derivatives with respect to a small rotation of the attitude depend on the initial state
         if self.variable.moved is not None:
             return self.start
         slopes = rotation_slopes(initial.quaternion, self.variable.axis)
@@ -132,8 +132,9 @@ def structure_of(scene: Scene, columns: Sequence[Column], varying: Collection[st
     The constants that depend on a variable, and the constants ``varying``, are free whatever their present values: they
     are parameters of the equations. ``columns`` has one :class:`Column` for each variable.
     """
-    # Derivatives by the former are needed, and the latter differ between the motions of an ensemble. Other zeros and
-    # ones simplify the equations.
+    # The variational equations contain the derivatives of the rates with respect to the constants that depend on a
+    # variable. The constants ``varying`` differ between the motions of an ensemble. Other zeros and ones simplify the
+    # equations.
     moving = {name for column in columns for name in column.constants} | set(varying)
     general, inertia = general_structure(scene, switched(scene)), scene.body.inertia
     nonzero = {name for name, (i, j) in PRODUCTS.items() if inertia[i][j] != 0 or name in moving}

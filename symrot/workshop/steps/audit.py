@@ -183,8 +183,9 @@ def _method(path: Path, data: Data) -> Method:
 
 
 def _options(method: Method) -> tuple[int | None, tuple[str, ...]]:
-    """Return the options by which a step is emitted: its order, and the inputs by which it is differentiated.
+    """Return the options with which a step is emitted: its order, and the names of some inputs.
 
+    The step is also differentiated with respect to these inputs.
     The order is None for the default order of a Taylor step, and for any other method.
     """
     if isinstance(method, SteadyRotations):
@@ -216,9 +217,10 @@ def _scene_name(path: Path, data: Data, method: Method) -> str:
 
 
 def _of_scene(path: Path, data: Data, method: Method, scene: SceneSource | None) -> str:
-    """Compare a step's certificate with the user's scene, or with the shipped scene that it names; return a sentence.
+    """Compare a step's certificate with the certificate that symrot generates for ``scene``; return a sentence.
 
-    CertificateError is raised if they differ.
+    ``scene`` is the user's scene or the shipped scene of the name in the certificate. If it is None, the sentence says
+    that the certificate was not compared. CertificateError is raised if the certificates differ.
     """
     if scene is None:
         return (

@@ -51,7 +51,7 @@ def certify_step(
     InputError
         For a step that cannot be emitted, an incomplete box, or a box on which an error has no bound.
     CertificateError
-        If the C text does not compute the method.
+        If the C text does not compute the formulas of the method.
     """
     printed = step_text(scene, step, order)
     progress("proving ..")
@@ -88,7 +88,8 @@ def _bounds(step: StepText, data: Data, ranges: Sequence[str]) -> Data:
 def proofs(data: Data) -> tuple[str, ...]:
     """Return the kinds of proof in the certificate of a step, such as ``("C text", "rounding", "truncation")``.
 
-    The result is empty for an exact step with elliptic functions, which is checked at some states only.
+    The result is empty for an exact step with elliptic functions (a closed form of the motion): its C text is checked
+    at some states, which is no proof.
     """
     if "scene" in data:
         return ()
@@ -126,7 +127,10 @@ def lines(data: Data) -> list[str]:
 
 
 def _law_rows(data: Data) -> list[tuple[str, str]]:
-    """Return pairs (label, text) about the certificate of an exact step with elliptic functions."""
+    """Return pairs (label, text) about a step that computes a closed form of the motion with elliptic functions.
+
+    They say at how many states the C text was checked against the equations of motion, and how large its errors can be.
+    """
     rows = [
         (
             "C text",
@@ -161,7 +165,10 @@ def _bound_rows(bounds: Mapping[str, Any], states: Sequence[str]) -> list[tuple[
 
 
 def _error_row(kind: str, errors: Mapping[str, float]) -> tuple[str, str]:
-    """Return a pair (label, text) about the largest bound of the ``errors`` of states, such as of rounding errors."""
+    """Return a pair (label, text) that states the largest error bound of all states.
+
+    ``kind`` is the kind of error, ``"rounding"`` or ``"truncation"``; ``errors`` maps each state to its error bound.
+    """
     worst = max(errors, key=errors.__getitem__)
     if not errors[worst]:
         return kind, "none"

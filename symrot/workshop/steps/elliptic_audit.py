@@ -1,4 +1,8 @@
-"""The audit of the certificate of an exact step with elliptic functions: symrot prints and checks the step again."""
+"""The audit of the certificate of an exact time step, which computes the motion in closed form by elliptic functions.
+
+The certificate contains a scene. symrot generates the C files and the certificate of this scene's step again, which
+includes the check of the C text against the equations of motion, and compares them with the user's files.
+"""
 
 import json
 from collections.abc import Mapping
@@ -28,6 +32,8 @@ The bound in the certificate still holds: symrot states bounds that are 1 + 2e-6
 
 def audit_elliptic(path: Path, data: Data, scene: SceneSource | None = None) -> list[str]:
     """Audit the certificate of an exact step with elliptic functions; return the statements that hold, one line each.
+
+    Such a step computes the state at a later time from the closed form of the motion.
 
     Parameters
     ----------
@@ -96,10 +102,11 @@ def _box(path: Path, data: Data) -> dict[str, tuple[Fraction, Fraction]]:
 
 
 def _bounds(path: Path, step: ExactStepText, data: Data) -> Data:
-    """Return the section ``bounds`` as symrot prints it, with the numbers that the certificate states.
+    """Compute the section ``bounds`` of a certificate again, and return it with the certificate's own error bounds.
 
-    CertificateError is raised if one of these numbers differs by more than the factor ``NEAR`` from the bound that
-    symrot computes on the same box.
+    ``data`` is the certificate. Its error bounds replace the computed ones, whose last digits depend on the machine.
+    CertificateError is raised if an error bound of the certificate differs by more than the factor ``NEAR`` from the
+    one that symrot computes on the same box.
     """
     box = _box(path, data)
     stated = {kind: _numbers(path, data["bounds"], kind) for kind in ("rounding", "truncation")}
@@ -121,7 +128,7 @@ def _bounds(path: Path, step: ExactStepText, data: Data) -> Data:
 def _numbers(path: Path, bounds: Data, kind: str) -> dict[str, float]:
     """Return the bounds of one ``kind`` of error, "rounding" or "truncation": name of a state -> bound.
 
-    ``bounds`` is the section of that name in a certificate. CertificateError is raised for a missing number.
+    ``bounds`` is the section ``bounds`` of a certificate. CertificateError is raised for a missing number.
     """
     try:
         return {name: float.fromhex(bounds[kind][name]) for name in STATE_NAMES}
@@ -132,9 +139,9 @@ def _numbers(path: Path, bounds: Data, kind: str) -> dict[str, float]:
 
 
 def _same(path: Path, own: Data, data: Data) -> None:
-    """Raise CertificateError if the certificate ``data`` differs in a section from ``own``, which symrot prints.
+    """Raise CertificateError if a section of a certificate differs from the section that symrot itself generates.
 
-    Both map the name of each section to its content.
+    ``own`` maps the names of symrot's sections to their content, and ``data`` the names of the certificate's sections.
     """
     for section in (*own, *data):
         if json.dumps(own.get(section), sort_keys=True) != json.dumps(data.get(section), sort_keys=True):
@@ -160,7 +167,11 @@ def _step(path: Path, data: Data) -> ExactStepText:
 
 
 def _of_scene(path: Path, name: str, data: Data, scene: SceneSource | None) -> str:
-    """Compare the scene in a certificate with the user's, or with the shipped scene ``name``; return a sentence."""
+    """Compare the scene in a certificate with ``scene``, the user's; return a sentence with the result.
+
+    If ``scene`` is None, the shipped scene ``name`` takes its place; if symrot has no scene of this name either, the
+    sentence says that the scene was not compared. CertificateError is raised if the scenes differ.
+    """
     if scene is None and name not in shipped_names():
         return (
             "the scene in the certificate was not compared, because symrot has no scene of its name; pass yours by "

@@ -1,7 +1,7 @@
 """One time step of a motion in elliptic functions as C99: the state after any dt, without heap or loop over time.
 
-The text has the C files by which symrot itself propagates the motion. Every call computes the constants of the motion
-from the state, in numbers of 31 digits; the cost does not depend on dt.
+The C text contains the code with which symrot itself propagates the motion. Every call computes the constants of the
+motion from the state, in numbers of 31 digits; the cost does not depend on dt.
 """
 
 import re
@@ -32,7 +32,7 @@ from symrot.workshop.steps.whole_state import WholeState
 
 __all__ = ["ExactStepText", "plain_content"]
 
-SPARE = 1 + 2e-6  # by which bounds are stated larger than computed, since sine differs between machines
+SPARE = 1 + 2e-6  # a stated bound is the computed bound times this factor, because sine differs between machines
 BOXED = ("omega_1", "omega_2", "omega_3", "dt")
 METHOD = "closed form of the motion, elliptic functions"
 MEANING = (

@@ -13,7 +13,7 @@ __all__ = ["StepFiles", "constant_table"]
 
 
 class StepFiles(KernelText):
-    """The C files and the certificate of a time step, by whichever method: "rk4", "taylor", "dop853" or "exact"."""
+    """The C files and the certificate of a time step of any method: "rk4", "taylor", "dop853" or "exact"."""
 
     # comments in the C files state no error bounds; those of rk4 and taylor are in the certificate alone
     folders: ClassVar[Mapping[str, str]] = {}
@@ -25,11 +25,11 @@ class StepFiles(KernelText):
     @property
     @abstractmethod
     def _parameters(self) -> Sequence[tuple[str, float]]:
-        """Pairs (name, value), one for each of the scene's parameters p; empty if the scene has none."""
+        """Pairs (name, value), one for each parameter of the scene's equations; empty if the equations have none."""
 
     @property
     def parameter_values(self) -> tuple[float, ...]:
-        """The values of the argument ``p`` in the scene."""
+        """The scene's values of the step's parameters, which the emitted function takes as the array ``p``."""
         return tuple(value for _, value in self._parameters)
 
     @property

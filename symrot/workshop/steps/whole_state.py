@@ -1,4 +1,7 @@
-"""The rates of all components of omega and of the quaternion of a scene; exact steps have all of these as states."""
+"""The rates of a scene's whole state: of all components of omega and of the quaternion, even of constant ones.
+
+The whole state is what an exact step takes and returns: a time step that computes the closed form of the motion.
+"""
 
 from dataclasses import replace
 from fractions import Fraction

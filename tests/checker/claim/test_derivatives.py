@@ -1,4 +1,4 @@
-"""Derivatives by any letter are read as such, and what nothing defines has no derivative that could be zero."""
+"""Derivatives with respect to any letter are read; what nothing defines has no derivative that could be zero."""
 
 import pytest
 

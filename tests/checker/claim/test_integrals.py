@@ -1,4 +1,4 @@
-"""Typed integrals with limits, densities, and derivatives by rates with ∂."""
+"""Typed integrals with limits, densities, and derivatives with respect to rates, with ∂."""
 
 import pytest
 
