@@ -107,7 +107,7 @@ class EnsembleMember(MotionSamples):
 
     @property
     def sensitivities(self) -> Sensitivities | None:
-        """The derivatives of this motion by k variables, arrays of shape (m, ..., k); None if none were requested."""
+        """The derivatives of this motion with respect to k variables, as arrays (m, ..., k); None if not requested."""
         every = self._ensemble.sensitivities
         return None if every is None else every.of(self._number)
 
@@ -149,8 +149,8 @@ class Ensemble(MotionSamples):
     tolerance : float
         Tolerance with which the motions were computed.
     sensitivities : Sensitivities or None
-        Derivatives of the motions by k variables (initial values and constants), if they were requested. The arrays
-        have the variables on their last axis: the derivatives of ``omega`` and ``quaternion`` have the shapes
+        Derivatives of the motions with respect to k initial values and constants, if they were requested. The arrays
+        have these variables on their last axis: the derivatives of ``omega`` and ``quaternion`` have the shapes
         (n, m, 3, k) and (n, m, 4, k); those of the rotation vector of the attitude, in the body, have (n, m, 3, k).
 
     Examples

@@ -65,7 +65,8 @@ def test_a_switch_that_brakes_by_its_square_slides():
 ])  # fmt: skip
 def test_what_has_no_single_value_while_sliding_ends_in_a_sentence(torque):
     with pytest.raises(
-        symrot.PropagationError, match=r"slide along the jumps? of sign\(omega_1\).*, but not in exactly one way"
+        symrot.PropagationError,
+        match=r"slide along the jumps? of sign\(omega_1\).* cannot compute: .*(do not determine|has no value)",
     ):
         symrot.propagator(scene(HOLDING, torque), "auto", 1e-9)([0, 5])
 
@@ -75,9 +76,19 @@ def test_friction_written_in_two_torques_ends_in_a_sentence():
         "schema": 1, "body": {"principal": [1, 1, 1]}, "initial": {"omega": [0, 0, 1]}, "span": {"t": [0, 5]},
         "torque": [{"kind": "expression", "torque": ["0", "0", f"-{k}*sign(omega_3)"]} for k in (1, 2)],
     }  # fmt: skip
-    with pytest.raises(symrot.PropagationError, match="not in exactly one way") as stopped:
+    with pytest.raises(symrot.PropagationError, match=r"do not determine the value of sign\(omega_3\)") as stopped:
         symrot.propagator(symrot.Scene.from_dict(made), "auto", 1e-9)([0, 0.25, 5])
     assert stopped.value.trajectory.t.tolist() == [0, 0.25]
+
+
+def test_a_motion_that_would_slide_backward_ends_where_it_meets_the_jump():
+    """omega_1 = 1/2 + t is zero at t = -1/2; before, the body can have been at rest in an unstable way for any time."""
+    torque = scene("sign(omega_1)", "0", omega=("1/2", 0, 0))
+    assert symrot.propagator(torque, "auto", 1e-9)([5]).omega[0, 0] == pytest.approx(5.5, abs=1e-8)
+    with pytest.raises(
+        symrot.PropagationError, match=r"t = -0\.5 .* slide along the jump of sign\(omega_1\) .* forward in time"
+    ):
+        symrot.propagator(torque, "auto", 1e-9)([-3])
 
 
 @pytest.mark.thinned(2)

@@ -106,7 +106,9 @@ class Crossings:
                 grazes |= leaving * speed <= 0.0 or not abs(leaving) > STEEP * max(guard.size(later), mean)
             if grazes and mode in jumps:
                 raise guards.refusal(
-                    before.end, f"the argument of {guards.name(mode)} reaches zero at a speed near zero"
+                    before.end,
+                    f"the argument of {guards.name(mode)} changes too slowly where {guards.name(mode)} switches, so "
+                    "that the time of this switch has no derivatives",
                 )
             rows[mode] = np.full(len(by.T), np.nan) if grazes else 0.0 - guard.change(by) / speed
         if not jumps and float(np.abs(later - f).max()) > STEEP * float(np.abs([f, later]).max()):

@@ -86,5 +86,5 @@ def _require_constant(guards: Guards, interval: Interval, mode: str, other: int,
         raise guards.refusal(
             interval.begin,
             f"the motion starts where {guards.name(mode)} switches, so that a larger and a smaller {variable} have "
-            "different effects; start it slightly to one side",
+            f"different effects; make {variable} slightly larger or smaller",
         )

@@ -101,9 +101,9 @@ def translation_unit(
     edges = list(blocks)
     if edges[:1] != [0] or edges[-1] != states or edges != sorted(set(edges)) or len(scales) != len(edges) - 1:
         raise InputError(
-            f"blocks: expected block edges that increase from 0 to {states} (the number of states), and one scale per "
-            "block, the size to which its errors are relative (a block is a group of consecutive states whose errors "
-            f"are measured together), got edges {edges} and scales {list(scales)}"
+            f"blocks: expected block edges that increase from 0 to {states} (the number of states), and one scale for "
+            f"each block, got edges {edges} and scales {list(scales)}; a block is a group of consecutive states whose "
+            "errors are measured together, and its scale is the size to which these errors are relative"
         )
     bounds = c_text("propagation/enclosures/enclosure.h")
     return "\n".join(

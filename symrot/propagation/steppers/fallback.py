@@ -19,7 +19,13 @@ from symrot.closed_form.arithmetic.double_double import two_sum
 from symrot.errors import InputError
 from symrot.propagation import progress
 from symrot.propagation.enclosures.step_limit import Deviations, longest_followed
-from symrot.propagation.steppers.integration_stopped import IntegrationStopped, add_samples, why_hopeless, why_stuck
+from symrot.propagation.steppers.integration_stopped import (
+    IntegrationStopped,
+    add_samples,
+    why_exhausted,
+    why_hopeless,
+    why_stuck,
+)
 from symrot.propagation.steppers.recording import Recording
 from symrot.propagation.steppers.rounding import RoundingSum
 from symrot.propagation.steppers.segments import Segment, segments, split_at
@@ -492,7 +498,7 @@ class _Integration:
                 raise IntegrationStopped(t, reason, stop)
             self.mark = (work, t)
         if self._spent > self.max_evaluations:
-            raise IntegrationStopped(t, f"{self.max_evaluations} evaluations were not enough", stop)
+            raise IntegrationStopped(t, why_exhausted(self.max_evaluations), stop)
 
     @property
     def _spent(self) -> int:
@@ -513,7 +519,7 @@ class _Integration:
     def _derivative(self, t: float, y: Floats) -> Floats:
         self.evaluations += 1
         if self.evaluations > self.max_evaluations:
-            raise IntegrationStopped(self.epoch + float(t), f"{self.max_evaluations} evaluations were not enough")
+            raise IntegrationStopped(self.epoch + float(t), why_exhausted(self.max_evaluations))
         dy = np.asarray(self.rhs(t, y, self.p), dtype=np.float64)
         if dy.shape != self.y0.shape:
             raise InputError(

@@ -9,7 +9,7 @@ from numpy.typing import NDArray
 from symrot.errors import PropagationError
 from symrot.propagation.steppers.stats import Stats
 
-__all__ = ["HOPELESS", "IntegrationStopped", "Samples", "add_samples", "why_hopeless", "why_stuck"]
+__all__ = ["HOPELESS", "IntegrationStopped", "Samples", "add_samples", "why_exhausted", "why_hopeless", "why_stuck"]
 
 HOPELESS = 3.0  # times the limit of steps: a motion that would need more steps at its present pace is stopped
 MANY_TICKS = 2**20  # doubles between both ends of a motion: with fewer, times are too coarse for its steps
@@ -85,6 +85,14 @@ def why_stuck(reason: str, t: float, t0: float, stop: float) -> str:
         return reason
     advice = "choose the origin of time, t = 0, nearer to the motion"
     return f"the next steps are too short for doubles, which lie {apart:.3g} s apart at this time; {advice}"
+
+
+def why_exhausted(limit: int) -> str:
+    """Return the reason of a motion that stops because its equations were evaluated more than ``limit`` times."""
+    return (
+        f"{limit} evaluations of the equations of motion, or of bounds of their rates, were not enough; shorten the "
+        "span, or choose a larger tolerance or another method"
+    )
 
 
 def why_hopeless(steps: int, way: float, left: float, limit: int) -> str:

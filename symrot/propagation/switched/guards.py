@@ -63,11 +63,12 @@ class Guards(RunState):
         """
         try:
             return self.system.regime(self.held if held is None else held, modes)
-        except InputError:  # the equations have no such motion or several
+        except InputError as reason:
             raise IntegrationStopped(
                 self.t,
-                f"the motion would slide along the jump of {self._names_of_held()}, but not in exactly one way: the "
-                "equations have no solution or several; change the torque, or end the motion at this time",
+                f"the motion would slide along the jump of {self._names_of_held()} (the states would stay at this "
+                f"jump), which symrot cannot compute: {str(reason).removeprefix('torque: ')}, or end the motion at "
+                "this time",
                 self.end,
             ) from None
 

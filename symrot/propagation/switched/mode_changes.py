@@ -106,8 +106,9 @@ class ModeChanges(Guards):
     def _not_unique(self) -> IntegrationStopped:
         return IntegrationStopped(
             self.t,
-            f"the motion slides along the jump of {self._names_of_held()}, but from this time on nearby motions lead "
-            "away from it: its continuation is not unique; end the motion at this time",
+            f"the motion slides along the jump of {self._names_of_held()} (the states stay at this jump), but from "
+            "this time on nearby motions lead away from the jump: the motion can go on in several ways; end the motion "
+            "at this time",
             self.end,
         )
 
@@ -167,9 +168,9 @@ class ModeChanges(Guards):
             if (mode, self.modes[mode]) in self.left:
                 raise IntegrationStopped(
                     self.t,
-                    f"the motion would slide along a jump of {self._name(mode)}; symrot computes sliding only for "
-                    "functions that jump where their argument changes sign, such as sign and step, not for floor and "
-                    "mod",
+                    f"the motion would slide along a jump of {self._name(mode)} (the states would stay at this jump); "
+                    "symrot computes sliding only for functions that jump where their argument changes sign, such as "
+                    "sign and step, not for floor and mod",
                     self.end,
                 )
         for other in asleep - self._asleep():
@@ -283,7 +284,9 @@ class ModeChanges(Guards):
         if self.side < 0.0:
             raise IntegrationStopped(
                 self.t,
-                "a motion that slides along a switch cannot be followed backward: it has more than one past",
+                f"before this time, the motion would slide along the jump of {self._name(mode)} (the states would stay "
+                "at this jump); symrot does not compute such a motion, because forward in time it can leave the jump "
+                "at any time and on either side",
                 self.end,
             )
         mode, _ = self.system.twins[mode][0]
@@ -385,8 +388,9 @@ class ModeChanges(Guards):
             if self.settled > MOST_SWITCHES:
                 raise IntegrationStopped(
                     self.t,
-                    "the torque switches again and again without end: its functions took their values at zero more "
-                    f"than {MOST_SWITCHES} times; change the torque, or end the motion at this time",
+                    f"the torque switches again and again without end: more than {MOST_SWITCHES} times, the argument "
+                    "of a function such as sign came to rest exactly where the function switches, or left this value; "
+                    "change the torque, or end the motion at this time",
                     self.end,
                 )
         self.modes = settled
@@ -434,9 +438,9 @@ class ModeChanges(Guards):
                 functions = f"{self._names_of_held()} and {self._name(mode)} at once"
                 raise IntegrationStopped(
                     self.t,
-                    f"the motion would slide along the jumps of {functions}, but not in exactly one way: the "
-                    f"equations do not determine the value of {self._name(mode)}; change the torque, or end the motion "
-                    "at this time",
+                    f"the motion would slide along the jumps of {functions} (the states would stay at these jumps), "
+                    f"which symrot cannot compute: the equations do not determine the value of {self._name(mode)}; "
+                    "change the torque, or end the motion at this time",
                     self.end,
                 )
 

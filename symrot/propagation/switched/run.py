@@ -105,8 +105,8 @@ class SwitchedRun(ModeChanges):
                 way = "past" if self.side < 0.0 else "future"
                 raise IntegrationStopped(
                     self.t,
-                    f"the motion starts where {self._name(mode)} switches, and can go on with either of its values: it "
-                    f"has more than one {way}; change the initial state slightly",
+                    f"the motion starts where {self._name(mode)} switches, and can go on with either value of this "
+                    f"function: the motion has more than one {way}; change the initial state slightly",
                     self.end,
                 )
 

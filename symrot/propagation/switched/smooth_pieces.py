@@ -16,7 +16,7 @@ from symrot.propagation.compiled_models import error_blocks
 from symrot.propagation.events.polynomials import Piece, fitted, rows_of
 from symrot.propagation.motions.methods import SciPyMotion, SteppedMotion
 from symrot.propagation.steppers import dop853, taylor
-from symrot.propagation.steppers.integration_stopped import IntegrationStopped, why_hopeless
+from symrot.propagation.steppers.integration_stopped import IntegrationStopped, why_exhausted, why_hopeless
 from symrot.propagation.steppers.stepping import Floats
 from symrot.propagation.switched.instant import Instant
 from symrot.propagation.switched.regimes import Regime
@@ -38,7 +38,7 @@ class SteppedPieces:
 
     def __init__(self, run: RunState, regime: Regime, motion: SteppedMotion, rates: list[float]) -> None:
         if not np.isfinite(run.y).all():
-            raise IntegrationStopped(run.t, "a component of its state is not a finite number there", run.end)
+            raise IntegrationStopped(run.t, "at this time, a component of the state is not a finite number", run.end)
         start = (motion.library, rates, run.y, run.t, motion.tolerance)
         if motion.choice.method == "taylor":
             self.integration = taylor.integration(*start)
@@ -157,7 +157,7 @@ class SciPyPieces:
                 raise IntegrationStopped(t, reason, run.end)
             run.mark = (run.spent, way)
         if run.spent > MAX_EVALUATIONS:
-            raise IntegrationStopped(t, f"{MAX_EVALUATIONS} evaluations were not enough", run.end)
+            raise IntegrationStopped(t, why_exhausted(MAX_EVALUATIONS), run.end)
 
     def cost(self) -> NDArray[np.int64]:
         """Return the numbers of steps accepted, steps rejected and evaluations so far, as an array.

@@ -184,8 +184,8 @@ class SwitchedSystem:
                 for switch in switches:
                     if names(switch.guard) & (held | tied.keys()):
                         raise InputError(
-                            f"torque: the motion slides along the jump of a function inside {switch.label}, and at "
-                            f"that jump {switch.label} has no value; put no function with a jump inside another one"
+                            f"torque: the states stay at the jump of a function inside {switch.label}, and at this "
+                            f"jump {switch.label} has no value; put no function with a jump inside another one"
                         )
                 own = on_own_clock(plan, self.choice, self.tolerance)
                 self._regime_of[content] = Regime(self.constants, self.switches, own, held, switches)
