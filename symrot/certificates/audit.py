@@ -90,7 +90,7 @@ def _unique(pairs: list[tuple[str, Any]]) -> Data:
 
 
 def _refused(text: str) -> Any:
-    raise ValueError(f"the number {text}")
+    raise ValueError(f"JSON has no number {text}")
 
 
 def audit(path: Path, symrot_statement: Callable[[Data], Data | None]) -> tuple[Data, list[str]]:
@@ -245,19 +245,21 @@ def _check_readback(data: Data, source: str) -> None:
         end = "f" if stated["type"] == "float" else ""
         # the section states, for each function, the counts and the digest of its operations and its constants
         checks = {
-            "keys": list(stated) == ["type", "operations", "digest", "constants", "series"],
-            "digests": one.digest() == batch.digest() == stated["digest"],
-            "counts": stated["operations"] == one.counts(),
+            "type, operations, digest, constants and series": list(stated)
+            == ["type", "operations", "digest", "constants", "series"],
+            "digest of the operations": one.digest() == batch.digest() == stated["digest"],
+            "numbers of operations": stated["operations"] == one.counts(),
             "constants": listed == [each for each in constants if each in listed]
             and all(
                 means == intended_text(intended_value(Fraction(written), one.precision))
                 for written, means in stated["constants"]
             ),
-            "series": series == [each for each in REMOVABLE if f"symrot_{each}{end}(" in source]
+            "series near zero": series == [each for each in REMOVABLE if f"symrot_{each}{end}(" in source]
             and all(str(Fraction(text)) == text for _, split, _, rest in stated["series"] for text in (split, rest)),
         }
         for what, holds in checks.items():
             if not holds:
                 raise CertificateError(
-                    f"{where}: expected the {what} that follow from the operations of {name}, got others"
+                    f"{where}: expected 'readback' in the certificate to state the {what} of the C function {name}, "
+                    "got another statement; certify the kernel again"
                 )

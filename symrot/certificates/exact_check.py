@@ -417,8 +417,8 @@ def prove(law, case, formulas):
                     pass
                 case _:
                     raise ValueError(
-                        f"expected the new variable {first} to stand for a call of sqrt, sin, cos, atan2 or copysign, "
-                        "got another formula"
+                        f"expected the name {first}, which the proof introduces, to stand for a call of sqrt, sin, "
+                        f"cos, atan2 or copysign, got {second[:60]!r}"
                     )
         elif kind == "square":
             square, value = map(reader.read, (first, second))

@@ -184,7 +184,7 @@ def rates_of(data: Data) -> Program:
             Argument("dy", "out", tuple((name, "", "") for name, _ in section["formulas"])),
         )  # fmt: skip
         if len(states) != len(section["formulas"]):
-            raise ValueError("as many formulas as states")
+            raise ValueError(f"{len(section['formulas'])} formulas for {len(states)} states")
         return Program(
             Signature(f"{data['kernel']}_rates", arguments),
             tuple((str(name), _folded(parse(formula))) for name, formula in section["temporaries"]),
@@ -270,9 +270,9 @@ def _require_intended(rates: Program) -> None:
             number = f"{meant.fraction}*pi" if meant.times_pi else str(meant.fraction)
             written = Decimal(node[1].numerator) / node[1].denominator
             raise InputError(
-                f"{rates.signature.name}: expected each constant to be the simplest number with its double, because "
-                f"the bounds are proven for this number, got {written}, which has the same double as {number}; write "
-                f"{number}, or {written} with fewer digits"
+                f"{rates.signature.name}: expected the constant {number}, got {written}: both round to the same "
+                f"double, and symrot proves the bounds for the simpler number; write {number}, or {written} with "
+                "fewer digits"
             )
 
 
@@ -296,9 +296,10 @@ def _with_intended_constants(rates: Program, method: Method) -> Method:
         for own, factor in fractions:
             if own is not None and own != coefficient * factor:
                 raise CertificateError(
-                    f"{method.name}: expected the constant {float(value * factor)!r} in the C text, which is {factor} "
-                    f"times the coefficient {float(value)!r}, to be a rounded value of {coefficient * factor}, but the "
-                    f"simplest number that rounds to it is {own}; take another method, or certify without ranges"
+                    f"{method.name}: expected the constants of the C text to stand for one value of the coefficient "
+                    f"{float(value)!r}, got two values: {coefficient}, and {own / factor} from the constant "
+                    f"{float(value * factor)!r} (the coefficient times {factor}), which stands for {own}; take "
+                    "another method, or certify without ranges"
                 )
         return coefficient
 

@@ -24,7 +24,7 @@ Elementary functions; theta series; transformed theta series, which converge fas
 separatrix.
 """
 
-_DOMAIN = 1
+_DOMAIN, _IN_DOUBT = 1, 3
 
 
 class ExactMotion(ABC):
@@ -121,10 +121,16 @@ def functions(name: str, arguments: int) -> tuple[Any, Any, Any]:
     return prepare, evaluate, ctypes.c_double * length()
 
 
-def prepared(name: str, arguments: tuple[list[float] | None, ...], refusal: Callable[[], str]) -> ExactMotion:
+def prepared(
+    name: str,
+    arguments: tuple[list[float] | None, ...],
+    refusal: Callable[[], str],
+    exact: Callable[[], tuple[list[Any] | None, ...]] | None = None,
+) -> ExactMotion:
     """Return a motion of the closed form ``name``; ``arguments`` are the arrays for its C function `prepare`.
 
-    ``refusal`` returns the error message for numbers outside the domain.
+    ``refusal`` returns the error message for numbers outside the domain. ``exact`` returns the same arguments with
+    fractions for the numbers hi, and zeros for lo, where 31 digits may not determine the motion.
 
     Raises
     ------
@@ -135,24 +141,31 @@ def prepared(name: str, arguments: tuple[list[float] | None, ...], refusal: Call
     """
     # without a C compiler, NumPy and mpmath compute the motion
     if not available(name):
-        from symrot.closed_form.portable import MOTIONS
-
-        try:
-            return _Portable(MOTIONS[name](*arguments))
-        except ValueError:
-            raise InputError(refusal()) from None
+        return _portable(name, arguments if exact is None else exact(), refusal)
     prepare, evaluate, record = functions(name, len(arguments))
     constants = record()
     arrays = [None if values is None else _packed(values) for values in arguments]
     status = prepare(*arrays, ctypes.addressof(constants))
     if status == _DOMAIN:
         raise InputError(refusal())
+    if status == _IN_DOUBT:
+        return _portable(name, arguments if exact is None else exact(), refusal)
     if status:
         raise CompilerError(
             "expected a C compiler that rounds after every operation, got one that fuses some, such as a*b + c; "
             "set CC to another compiler"
         )
     return _Compiled(constants, evaluate)
+
+
+def _portable(name: str, arguments: tuple[list[Any] | None, ...], refusal: Callable[[], str]) -> ExactMotion:
+    """Return the motion with constants of 120 digits or more; other arguments are those of :func:`prepared`."""
+    from symrot.closed_form.portable import MOTIONS
+
+    try:
+        return _Portable(MOTIONS[name](*arguments))
+    except ValueError:
+        raise InputError(refusal()) from None
 
 
 _packing = {length: Struct(f"{length}d").pack for length in (2, 4, 6, 8, 26)}

@@ -176,16 +176,17 @@ def _require_shared(column: Column, varying: Collection[str]) -> None:
     moved |= {"quaternion"} if any(column.start[RATES:]) else set()
     own = sorted(moved.intersection(varying))
     if own:
+        keys = [ATTITUDE if name == "quaternion" else name for name in own]
         raise InputError(
-            "sensitivities: expected a variable that sets only constants shared by all motions, but "
-            f"{variable.name} sets {', '.join(own)}, whose values differ between the motions; "
-            f"name {' or '.join(own)} itself as a variable"
+            f"sensitivities: expected a variable that changes only numbers that all motions share, but {variable.name} "
+            f"changes {', '.join(own)}, whose values differ between the motions; name {' or '.join(keys)} as the "
+            "variable instead"
         )
 
 
 def _constant(variable: Variable) -> str:
-    """Return the name of the constant that ``variable`` sets: ``weight``, or ``I_yy`` for ``principal_2``."""
-    # for a variable that sets several constants, such as a mass, no constant has this name
+    """Return the name of the constant that ``variable`` changes: ``weight``, or ``I_yy`` for ``principal_2``."""
+    # for a variable that changes several constants, such as a mass, no constant has this name
     stem, _, number = variable.name.rpartition("_")
     return f"I_{2 * 'xyz'[int(number) - 1]}" if stem == "principal" else variable.name
 

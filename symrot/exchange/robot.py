@@ -378,9 +378,9 @@ def _read_mjcf(element: Element, root: Element) -> Inertial:
     for key, values in _CHANGING.items():
         if key in settings and _changes(key, settings[key]):
             raise InputError(
-                f"compiler: expected {key} = {values[-1]!r}, got {show(settings[key])}, with which MuJoCo changes the "
-                f'mass properties in <inertial>; write {key}="{values[-1]}", and write the mass properties that '
-                "MuJoCo computes into <inertial>"
+                f"compiler: expected {key} = {values[-1]!r}, got {show(settings[key])}, which makes MuJoCo "
+                f'use other mass properties than those in <inertial>; write {key}="{values[-1]}", and copy the mass '
+                "properties that MuJoCo uses into <inertial>"
             )
     sequence = settings.get("eulerseq", "xyz")
     if not re.fullmatch("[xyzXYZ]{3}", sequence):

@@ -207,8 +207,10 @@ def _checked(question: Question) -> Question:
     texts = [value for name, value in vars(question).items() if name not in ("symbols", "positive", "slips")]
     texts += question.positive
     texts += [text for pair in (*question.symbols.items(), *question.slips.items()) for text in pair]
-    if not all(isinstance(text, str) for text in texts) or question.kind not in ("formula", "number"):
-        raise ValueError("a question of unknown kind, or with a field that is not a text")
+    if not all(isinstance(text, str) for text in texts):
+        raise ValueError(f"the question {question.key!r} has a field that is not a string")
+    if question.kind not in ("formula", "number"):
+        raise ValueError(f"the question {question.key!r} has the kind {question.kind!r}, not 'formula' or 'number'")
     if question.kind == "number":
         for number in (question.decimal, *question.slips.values()):
             float(number)

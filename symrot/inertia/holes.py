@@ -320,6 +320,6 @@ def require_points(added: Sequence[PointMass], subtracted: Sequence[tuple[str, P
         if gone > there * (1 + DENSITY):
             place = ", ".join(f"{float(x):.6g}" for x in point)
             raise InputError(
-                f"{name}: expected at most {there:.6g} kg to subtract at ({place}) m in the axes of the body, since "
-                f"the other point masses there have no more mass, got {gone:.6g} kg"
+                f"{name}: expected at most {there:.6g} kg to subtract at ({place}) m in the axes of the body, the "
+                f"total of the other point masses there, got {gone:.6g} kg"
             )

@@ -159,7 +159,7 @@ def _degree(node: Node) -> int:
     if kind == "**":
         return _degree(node[1]) * abs(int(node[2]))
     if kind == "call":
-        raise ValueError(f"it calls {node[1]}")
+        raise ValueError(f"the formula calls {node[1]}, which is no polynomial")
     left, right = _degree(node[1]), _degree(node[2])
     return left + right if kind in "*/" else max(left, right)
 

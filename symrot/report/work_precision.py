@@ -167,8 +167,8 @@ def compared(first: Mapping[str, Any], second: Mapping[str, Any]) -> dict[str, A
     floors = [_least_errors(study) for study in (first, second)]
     if not methods:
         raise InputError(
-            "--compare: expected a method that reaches the same power of ten of the error, such as 1e-9, in both "
-            "studies, got studies that have no method and error in common; measure both with the same methods"
+            "--compare: expected a method that both studies measured at the same error, such as 1e-9, got none; "
+            "measure both studies with the same methods"
         )
     return {
         "format": "symrot comparison 1",

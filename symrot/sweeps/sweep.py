@@ -282,7 +282,7 @@ def _texts(value: str | Sequence[str], where: str) -> list[str]:
     try:
         return [value] if isinstance(value, str) else list(value)
     except TypeError:
-        raise InputError(f"{where}: expected a text or a list of texts, got {show(value)}") from None
+        raise InputError(f"{where}: expected a string or a list of strings, got {show(value)}") from None
 
 
 def _require_averages(statistics: Sequence[Statistic], outputs: Sequence[SweepOutput]) -> None:

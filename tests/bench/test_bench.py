@@ -363,7 +363,7 @@ def test_studies_of_two_scenes_are_not_compared(found):
     changed = found | {"scene": found["scene"] | {"digest": "another"}}
     with pytest.raises(InputError, match="two different motions with the same name 'short'"):
         compared(found, changed)
-    with pytest.raises(InputError, match="expected a method that reaches the same power of ten of the error"):
+    with pytest.raises(InputError, match="expected a method that both studies measured at the same error"):
         compared(found, found | {"decades": []})
 
 

@@ -87,6 +87,30 @@ def test_a_top_falls_from_near_the_vertical_when_the_pendulum_does(rate, times):
     assert np.abs(found - expected).max() < 1e-14
 
 
+@pytest.mark.parametrize("compiler", ["cc", "no such compiler"])
+@pytest.mark.parametrize("digits", [12, 20, 30, 45, None])
+@pytest.mark.parametrize("rate", [1, -1])
+def test_a_pendulum_passes_the_top_or_stays_there(rate, digits, compiler, monkeypatch):
+    """cos(theta/2) = -sn(u), and -tanh(u) for the pull 5/4, on the separatrix (digits None).
+
+    At 2 arctan(1/2) from the top, the rate 1 is enough to reach it for this pull. Numbers of 31 digits gave a body that
+    fell after 40 s.
+    """
+    monkeypatch.setenv("CC", compiler)
+    monkeypatch.setattr(library, "_loaded", {})
+    pull = Fraction(5, 4) - (Fraction(1, 10**digits) if digits else 0)
+    motion = heavy_top.motion((1, 1, Fraction(1, 2)), pull, ABOVE, (rate, 0, 0), (2, 1, 0, 0))
+    times = [0.0, 10.0, 40.0, 80.0, 200.0]
+    with mpmath.workdps(120):
+        weight, energy = mpmath.mpf(pull.numerator) / pull.denominator, mpmath.mpf(1) / 2
+        energy += weight * 3 / 5
+        speed, m, start = mpmath.sqrt((energy + weight) / 2), 2 * weight / (energy + weight), -2 / mpmath.sqrt(5)
+        first = mpmath.ellipf(mpmath.asin(start), m) if digits else mpmath.atanh(start)
+        turned = [first + rate * speed * t for t in times]
+        expected = [float(-(mpmath.ellipfun("sn", u, m=m) if digits else mpmath.tanh(u))) for u in turned]
+    assert motion.evaluate(times)[1][:, 0] == pytest.approx(expected, abs=1e-15)
+
+
 @pytest.fixture
 def no_compiler(monkeypatch):
     """Imitate a machine without a C compiler and without loaded libraries."""

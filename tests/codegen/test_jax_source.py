@@ -133,10 +133,10 @@ def test_a_constant_may_have_the_name_of_a_word_of_python():
 
 
 @pytest.mark.parametrize(("name", "old", "new", "message"), [
-    ("heavy_top", "q1*half_1 + ", "q1*half_1 - ", "got others"),
-    ("heavy_top", "half_1 = 0.5*", "half_1 = 0.25*", "got others"),
+    ("heavy_top", "q1*half_1 + ", "q1*half_1 - ", "got other operations"),
+    ("heavy_top", "half_1 = 0.5*", "half_1 = 0.25*", "got other operations"),
     ("heavy_top", "dq = jnp.stack([", "domega = jnp.stack([", "one assignment|to assign"),
-    ("heavy_top", "    A, B, C = inertia\n", "    B, A, C = inertia\n", "got others"),
+    ("heavy_top", "    A, B, C = inertia\n", "    B, A, C = inertia\n", "got other operations"),
     ("heavy_top", "    A, B, C = inertia\n", "    A, B = inertia\n", "names for the 3 components of inertia"),
     ("heavy_top", "2.0*W", "2*W", "literal"),
     ("heavy_top", "    A, B, C = inertia\n", "    A, A, C = inertia\n", "not yet used"),
@@ -149,7 +149,7 @@ def test_a_constant_may_have_the_name_of_a_word_of_python():
     ("heavy_top", ")/A,", ")/A, A,", "one formula in each line"),
     ("heavy_top", "q2*q3", "q2**q3", "as symrot emits it"),
     ("rotation_vector_dcm", "-x*_tangent_gap(x)*dx", "x*_tangent_gap(x)*dx", "only definitions of functions"),
-    ("rotation_vector_dcm", "x == 0.0, 1.0,", "x == 0.0, 2.0,", "got others"),
+    ("rotation_vector_dcm", "x == 0.0, 1.0,", "x == 0.0, 2.0,", "got other operations"),
     ("rotation_vector_dcm", "@jax.custom_jvp\n", "", "a rule for the derivative"),
     ("rotation_vector_dcm", "jnp.where(x == 0.0, 1.0, jnp.sin(x)/x)", "jnp.sin(x)/x", "jnp.where"),
 ])  # fmt: skip

@@ -135,8 +135,8 @@ def test_the_operations_are_those_of_the_c_text():
 
 
 @pytest.mark.parametrize(("old", "new", "message"), [
-    ("q1*half_1 + ", "q1*half_1 - ", "got others"),
-    ("const half_1 = 0.5*", "const half_1 = 0.25*", "got others"),
+    ("q1*half_1 + ", "q1*half_1 - ", "got other operations"),
+    ("const half_1 = 0.5*", "const half_1 = 0.25*", "got other operations"),
     ("dq[0] =", "dq[1] =", "one assignment"),
     ("    dq[3] =", "    // dq[3] =", "to assign"),
     ("const A", "let A", "an output array"),

@@ -135,7 +135,13 @@ def test_motions_through_switches_have_the_derivatives_of_single_motions():
         (
             "heavy_top_loops",
             {"sensitivities": ["gravity"], "parameters": {"weight": [1.0, 2.0, 3.0]}},
-            "gravity sets weight",
+            "gravity changes weight",
+        ),
+        (
+            TOP
+            | {"initial": {"omega": [1, 2, 3], "attitude": {"sequence": "ZXZ", "angles": [0, 30, 0], "degrees": True}}},
+            {"sensitivities": ["initial.attitude.angles[1]"], "quaternion": ATTITUDES},
+            "changes quaternion, whose values differ between the motions; name attitude as the variable instead",
         ),
     ],
 )

@@ -220,7 +220,7 @@ BOMB = '<!DOCTYPE r [<!ENTITY a "aaaaaaaaaa"><!ENTITY b "&a;&a;&a;&a;&a;&a;&a;&a
     (SDF.format(attributes='rotation_format="euler"', rotation="0 0 0"), "expected the rotation_format euler_rpy or quat_xyzw"),
     (SDF.format(attributes="", rotation="0 0 0").replace("<inertial>", '<inertial auto="true">'), "got auto"),
     (MJCF.format(compiler='inertiafromgeom="true"', inertia='diaginertia="1 1 1"'), "compiler: expected inertiafromgeom = 'false', got 'true'"),
-    (MJCF.format(compiler='balanceinertia="true"', inertia='diaginertia="1 1 1"'), "with which MuJoCo changes the mass properties in <inertial>; write balanceinertia=\"false\""),
+    (MJCF.format(compiler='balanceinertia="true"', inertia='diaginertia="1 1 1"'), "which makes MuJoCo use other mass properties than those in <inertial>; write balanceinertia=\"false\""),
     (MJCF.format(compiler='fusestatic="true"', inertia='diaginertia="1 1 1"'), "compiler: expected fusestatic = 'false', got 'true'"),
     (MJCF.format(compiler='settotalmass="1e1"', inertia='diaginertia="1 1 1"'), "compiler: expected settotalmass = '-1', got '1e1'"),
     (MJCF.format(compiler='eulerseq="xyw"', inertia='diaginertia="1 1 1"'), "compiler.eulerseq: expected three axes"),

@@ -179,9 +179,9 @@ def test_statistics_are_those_of_all_values(whole):
         ({"count": 1e9}, "path: expected a file to write"),
         ({"vary": [1]}, "vary: expected a dict"),
         ({"vary": {3: "normal(0, 1)"}}, "vary: expected the name of a value, such as 'omega_1', got 3"),
-        ({"outputs": 3}, "outputs: expected a text or a list of texts, got 3"),
+        ({"outputs": 3}, "outputs: expected a string or a list of strings, got 3"),
         ({"outputs": [3]}, "output: expected a text such as 'omega_1@end', got 3"),
-        ({"statistics": 3}, "statistics: expected a text or a list of texts, got 3"),
+        ({"statistics": 3}, "statistics: expected a string or a list of strings, got 3"),
     ],
 )
 def test_an_argument_that_cannot_be_used_is_one_sentence(options, message):
@@ -216,7 +216,7 @@ def test_outputs_that_are_derivatives_are_those_of_an_ensemble():
     [
         ("heavy_top_loops", "omega_1_by_wieght", "did you mean 'weight'"),
         ("heavy_top_loops", "omeg_1_by_weight", "did you mean 'omega_1'"),
-        ("heavy_top_loops", "omega_1_by_body.mass@end", "body.mass sets I_xx"),
+        ("heavy_top_loops", "omega_1_by_body.mass@end", "body.mass changes I_xx"),
     ],
 )
 def test_a_derivative_that_does_not_exist_is_refused_before_the_sweep(scene, output, message):

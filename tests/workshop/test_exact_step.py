@@ -418,7 +418,8 @@ def _less_trust(data):
 
 @pytest.mark.parametrize(("change", "message"), [
     (_half_rounding, "expected"), (_less_truncation, "expected the bounds that symrot computes"),
-    (_faster_rates, "expected next|its rate"), (_coupled_rates, "omega_3 by the length dt of the step to be its rate"),
+    (_faster_rates, "expected next|to be the rate"),
+    (_coupled_rates, "omega_3 with respect to the step length dt to be the rate"),
     (_other_states, "in the form|exact step, got those of omega_4|as symrot prints"),
     (_other_axis, "got another formula"), (_no_axis, "symmetry axis"),
     (_other_chance, "the proof that symrot derives from the C text"), (_less_trust, "the section 'trusted'"),
@@ -444,7 +445,7 @@ def test_a_wrong_closed_form_is_refused(monkeypatch):
         return original(self, rates, values, -dt, functions, number)
 
     monkeypatch.setattr(SteadyRotations, "after", backward)
-    with pytest.raises(CertificateError, match="by the length dt of the step to be its rate"):
+    with pytest.raises(CertificateError, match="with respect to the step length dt to be the rate"):
         step_text(scene_of(SYMMETRIC), "exact").certificate()
 
 
@@ -453,7 +454,9 @@ def test_a_closed_form_of_other_rates_is_refused():
     text = step_text(scene_of(SPHERE), "exact")
     (first, _), *others = text._rates_program.outputs
     damped = replace(text._rates_program, outputs=((first, parse("-omega_1")), *others))
-    with pytest.raises(CertificateError, match="the derivative of omega_1 by the length dt of the step to be its rate"):
+    with pytest.raises(
+        CertificateError, match="the derivative of omega_1 with respect to the step length dt to be the rate"
+    ):
         formula_section(text.name, damped, text.method, text.c()[0])
 
 

@@ -305,7 +305,7 @@ class Expressions(Reader):
             if token.text in scope:
                 return self._variable(*scope[token.text])
         self.index -= 1
-        raise self._fail("a variable that is known here")
+        raise self._fail("a variable that is declared before its use")
 
     def _variable(self, kind: Type, is_global: bool, slot: int) -> Value:
         frame = self.globals
@@ -328,6 +328,7 @@ class Expressions(Reader):
         return Value(REAL, lambda f: constant)
 
     def _call(self, name: str) -> Value:
+        place = self.index - 1
         self._expect("(")
         arguments: list[Value] = []
         while not self._take(")"):
@@ -338,7 +339,8 @@ class Expressions(Reader):
         elif name in self.own:
             result, *kinds = (_LETTERS.get(letter, VOID) for letter in self.own[name][0])
         else:
-            raise self._fail(f"a function that is known here, not {name}")
+            self.index = place
+            raise self._fail("a function that the C text defines, or a C library function that symrot can evaluate")
         if len(arguments) != len(kinds):
             raise self._fail(f"{len(kinds)} arguments of {name}")
         runs = [self._converted(value, kind) for value, kind in zip(arguments, kinds, strict=True)]

@@ -168,7 +168,7 @@ class _Context:
         if not (slope.is_exact and slope.low == 0 and turns <= LONGEST):
             raise InputError(
                 f"expected a range of dt in which each angle of the motion, such as the precession, grows by at most "
-                f"{LONGEST:.0f} revolutions, got {turns:.3g} revolutions; write a smaller largest dt"
+                f"{LONGEST:.0f} revolutions, got {turns:.3g} revolutions; lower the upper end of the range of dt"
             )
         if not size.most <= SIZES:
             raise InputError(f"expected dt times |omega| of at most {SIZES}, got {size.most:.3g}")

@@ -39,8 +39,8 @@ def signed_parts(box: Box) -> Iterator[Part]:
         parts += [(low, min(high, -least))] if low <= -least else []
         if not parts:
             raise InputError(
-                f"expected a range of omega_{i} that contains 0 or a number whose size is at least {TINY:g} times the "
-                f"largest |omega| in the given ranges, got {low:g} to {high:g}"
+                f"expected a range of omega_{i} that contains 0 or a value of at least {least:.3g} rad/s in size "
+                f"({TINY:g} times the largest component of omega in the given ranges), got {low:g} to {high:g}"
             )
         choices.append(parts)
     yield from product(*choices)

@@ -283,7 +283,7 @@ def _violation(
         worst = max(worst, off := abs(end.slope - rate) / (scale * scale if symbol.startswith("omega") else scale))
         if not off < LIMIT:  # a number that is not finite is below no limit
             raise CertificateError(
-                f"{name}: expected the derivative of {symbol} by the length dt of the step to be its rate "
-                f"{float(rate):.9g}, got {float(end.slope):.9g}"
+                f"{name}: expected the derivative of {symbol} with respect to the step length dt to be the rate "
+                f"{float(rate):.9g} that the equations of motion give, got {float(end.slope):.9g}"
             )
     return worst

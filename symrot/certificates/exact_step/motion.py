@@ -113,8 +113,8 @@ def _compared(
         change, rate = Residue.of(result.slopes.get(SIZE, 0)), Residue.of(slope)
         if change.value != rate.value:
             raise CertificateError(
-                f"{file}: expected the derivative of {name} by the length dt of the step to be its rate, got "
-                "another formula"
+                f"{file}: expected the derivative of {name} with respect to the step length dt to be the rate that the "
+                "equations of motion give, got another formula"
             )
         degree = max(degree, change.degree + rate.degree)
     return degree

@@ -166,9 +166,8 @@ class _EqualityProver:
             return {index}
         if node[0] not in ("add", "mul"):
             raise CertificateError(
-                f"{self.operations.name}: expected a conditional x*x < c ? series : formula in the C text, in which "
-                "the series of a function such as (x - sin(x))/x^3 consists of constants, sums and products, got one "
-                f"with the operation {node[0]!r}"
+                f"{self.operations.name}: expected the series in each C conditional x*x < c ? series : formula to "
+                f"consist of constants, sums and products, got a series with the operation {node[0]!r}"
             )
         return {index} | self._below(node[1], leaf) | self._below(node[2], leaf)
 
@@ -222,8 +221,8 @@ class _EqualityProver:
                     ):
                         return self.fractions.generator(atom)
         raise CertificateError(
-            f"{self.operations.name}: expected each conditional in the C text to be in the stated formula too, got one "
-            f"with the relation {relation!r}"
+            f"{self.operations.name}: expected each conditional in the C text to be in the formulas of the kernel "
+            f"too, got a conditional that the formulas lack, with the relation {relation!r}"
         )
 
     def _is_limit_or_formula(
@@ -254,7 +253,8 @@ class _EqualityProver:
                 return self.fractions.generator(atom)
         raise CertificateError(
             f"{self.operations.name}: expected each conditional x*x < c ? series : formula in the C text to compute a "
-            "function in the stated formulas, such as (x - sin(x))/x^3, got one that computes none of these functions"
+            "function in the formulas of the kernel, such as (x - sin(x))/x^3, got a conditional that computes another "
+            "function"
         )
 
     def _coefficients(self, index: int, leaf: int) -> list[Fraction]:

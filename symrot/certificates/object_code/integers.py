@@ -155,9 +155,7 @@ def _lea(state: MachineState, instruction: Instruction) -> None:
 def operands_of(instruction: Instruction, count: int) -> tuple[object, ...]:
     """Return the operands of an instruction; raise NotUnderstood unless there are ``count`` operands."""
     if len(instruction.operands) != count:
-        raise NotUnderstood(
-            f"expected as many operands as the instruction table lists, got {len(instruction.operands)}"
-        )
+        raise NotUnderstood(f"expected {count} operands, got {len(instruction.operands)}")
     return instruction.operands
 
 
@@ -275,7 +273,7 @@ def _imul(state: MachineState, instruction: Instruction) -> None:
     target, *sources = instruction.operands
     size = _size(instruction)
     if not 1 <= len(sources) <= 2:
-        raise NotUnderstood("expected operands for which symrot knows the effect of this instruction, got others")
+        raise NotUnderstood(f"expected two or three operands, got {len(instruction.operands)}")
     first, second = (
         read(state, instruction, item, size) for item in (sources if len(sources) == 2 else (target, *sources))
     )

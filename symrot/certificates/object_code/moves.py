@@ -28,7 +28,9 @@ def _source(state: MachineState, instruction: Instruction, operand: object, size
     if isinstance(operand, Register) and operand.name in VECTORS:
         return list(state.register(operand.name))
     if not isinstance(operand, Memory) or operand.size not in (size, 0):
-        raise NotUnderstood("expected operands for which symrot knows the effect of this instruction, got others")
+        raise NotUnderstood(
+            "expected a vector register or memory of the instruction's size as source, got another operand"
+        )
     base, offset = memory_place(state, instruction, operand)
     is_vex = instruction.mnemonic.startswith("v")
     must_be_aligned = size >= 16 and bare not in UNALIGNED and (not is_vex or bare in ALIGNED)
@@ -62,7 +64,7 @@ def run_vector_instruction(state: MachineState, instruction: Instruction) -> Non
         write(state, instruction, target, words)
         return
     if not isinstance(target, Register) or target.name not in VECTORS:
-        raise NotUnderstood("expected operands for which symrot knows the effect of this instruction, got others")
+        raise NotUnderstood("expected a vector register or memory as destination, got another operand")
     count = VECTORS[target.name][1]
     keeps_target = not is_vex or bare.startswith(("fmadd", "fmsub", "fnmadd", "fnmsub"))
     source_words = [
@@ -151,7 +153,7 @@ def _move_half(start: int) -> Callable[[MachineState, Instruction, str, bool], N
         first = _source(state, instruction, sources[0] if len(sources) == 2 else target, 16, bare)
         words = _source(state, instruction, sources[-1], 8, bare)
         if not isinstance(sources[-1], Memory):
-            raise NotUnderstood("expected operands for which symrot knows the effect of this instruction, got others")
+            raise NotUnderstood("expected memory as source, got a register")
         state.set_vector(target.name, first[:start] + words + first[start + 2 :], is_vex)
 
     return move
@@ -161,7 +163,7 @@ def _extract(size: int) -> Callable[[MachineState, Instruction, str, bool], None
     def move(state: MachineState, instruction: Instruction, bare: str, is_vex: bool) -> None:
         target, source, place = operands_of(instruction, 3)
         if not isinstance(place, Constant):
-            raise NotUnderstood("expected operands for which symrot knows the effect of this instruction, got others")
+            raise NotUnderstood("expected a constant as last operand, got another operand")
         start = place.value * (size // 4) % 4
         write(state, instruction, target, _source(state, instruction, source, 16, bare)[start : start + size // 4])
 
@@ -172,7 +174,7 @@ def _insert(size: int) -> Callable[[MachineState, Instruction, str, bool], None]
     def move(state: MachineState, instruction: Instruction, bare: str, is_vex: bool) -> None:
         target, *sources, place = instruction.operands
         if not isinstance(place, Constant) or not isinstance(target, Register):
-            raise NotUnderstood("expected operands for which symrot knows the effect of this instruction, got others")
+            raise NotUnderstood("expected a register as destination and a constant as last operand, got other operands")
         first = _source(state, instruction, sources[0] if len(sources) == 2 else target, 16, bare)
         start, words = place.value * (size // 4) % 4, read(state, instruction, sources[-1], size)
         state.set_vector(target.name, first[:start] + words + first[start + size // 4 :], is_vex)

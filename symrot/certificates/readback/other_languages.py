@@ -37,7 +37,9 @@ def compare_operations(as_c: AsC, text: str, name: str, c_text: str, where: str)
         raise CertificateError(f"{where}: expected C text with the function {function}")
     # same constants, same functions, same order of rounding
     if read_kernel(as_c(text, name, model, where), function, where) != read_kernel(c_text, function, where):
-        raise CertificateError(f"{where}: expected the operations of the C function {function}, got others")
+        raise CertificateError(
+            f"{where}: expected the same operations as in the C function {function}, got other operations"
+        )
 
 
 def kernel_head(model: CFunction) -> str:

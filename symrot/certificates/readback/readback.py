@@ -349,8 +349,8 @@ def read_batch(text: str, name: str, where: str = "kernel") -> Operations:
     counts = [p.name for p in function.parameters if p.type == "size_t"]
     if len(counts) != 1:
         raise CertificateError(
-            f"{where}, line {function.line}: expected one argument with the number of samples in "
-            f"{name}, got none or several"
+            f"{where}, line {function.line}: expected the function {name} to have one argument of the type size_t, the "
+            f"number of samples, got {len(counts)}"
         )
     reader, scope = _BodyReader(functions, where, real, batch=True), _Scope(count=counts[0])
     scope.arrays = {p.name: p for p in function.parameters if p.type != "size_t"}

@@ -72,7 +72,8 @@ def require_order(method: Method) -> tuple[Fraction, ...]:
     for node, stage in zip(method.nodes, method.stages, strict=True):
         if abs(sum(stage.values(), Fraction(0)) - node) > most:
             raise CertificateError(
-                f"{method.name}: expected each node to be the sum of the weights of its stage, got {node}"
+                f"{method.name}: expected each node c_i to be the sum of the coefficients a_ij of its stage, "
+                f"{sum(stage.values(), Fraction(0))}, got {node}"
             )
     return tuple(max(_defect(tree, method, most) for tree in trees(size)) for size in range(1, method.order + 1))
 

@@ -90,8 +90,9 @@ class Turning:
             self._final, self._rest = pair(final * turn), pair(rest * turn)
         except OverflowError:
             raise InputError(
-                "expected no damping, stronger damping or a smaller torque: constants of the motion exceed the range "
-                f"of doubles for a decay rate of {float(decay)!r} 1/s and an acceleration of {float(push)!r} rad/s^2"
+                "expected constants of the motion within the range of doubles, got larger ones for an angular velocity "
+                f"of {float(rate)!r} rad/s, an acceleration of {float(push)!r} rad/s^2 and a decay rate of "
+                f"{float(decay)!r} 1/s: the damping is too weak; write stronger damping, or none"
             ) from None
         self._bits = _BITS + max(int(abs(x)) for x in self._exact).bit_length()
         self._scaled: dict[int, tuple[int, int, int, int]] = {}

@@ -7,6 +7,9 @@
 /* Nearer to the unstable upright position, inputs of 31 digits do not determine when the top falls. */
 #define NEAR 1e-29
 
+/* Largest relative error of S2 - S3, which vanishes on the separatrix: the time of the fall has half this error. */
+#define DOUBT 1e-16
+
 /* The nome is at most 0.075 (where m = 0.7): nome^(n^2) is below 1e-40 from n = 6 on. */
 enum { TERMS = 6 };
 
@@ -204,7 +207,8 @@ static dd in_turns(dd rate)
  * in   axes[26]       1       NULL, or the matrix, row by row, and the unit quaternion from e1, e2, e3 to body axes
  * out  t                      the constants
  * Domain: a start at the unstable upright position, or at least NEAR away from it: hypot(|beta|, |w1 + i w2|/scale).
- * Returns 0; 1 if the numbers are outside this domain; 2 if the compiler has broken error-free arithmetic.
+ * Returns 0; 1 if the numbers are outside this domain; 2 if the compiler has broken error-free arithmetic; 3 if the
+ * motion is so near to the separatrix that numbers of 31 digits do not determine it.
  */
 int symrot_heavy_top_prepare(
     const double moments[4], const double pull[2], const double omega[6], const double quaternion[8],
@@ -277,6 +281,8 @@ int symrot_heavy_top_prepare(
         return 0;
     }
     find_roots(&n, w2, motion.im);
+    if (n.doubt > DOUBT)
+        return 3;
     const dd zero = dd_of(0.0), half_pi = dd_scale(pi, 0.5);
     const dd k = n.complement.hi > 0.0 ? dd_div(half_pi, dd_agm(dd_sqrt(n.complement))) : zero;
     const dd k_prime = n.modulus.hi > 0.0 ? dd_div(half_pi, dd_agm(dd_sqrt(n.modulus))) : zero;

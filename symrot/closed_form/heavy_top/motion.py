@@ -109,7 +109,8 @@ class Top:
             return
         axis = along[0]
         pull = Fraction(force) * Fraction(center[axis])
-        self.moments, self.pull = flatten_pairs([moments[axis - 2], moments[axis]]), flatten_pairs([abs(pull)])
+        self._moments, self._pull = [moments[axis - 2], moments[axis]], abs(pull)
+        self.moments, self.pull = flatten_pairs(self._moments), flatten_pairs([self._pull])
         self.frame = Frame(axis, [-x for x in down] if pull > 0 else down)
 
     def motion(self, omega0: Sequence[Number], quaternion0: Sequence[Number]) -> ExactMotion:
@@ -128,7 +129,20 @@ class Top:
                 "exactly there (method='taylor' computes such motions), got moments "
                 f"{[float(x) for x in self._inertia]}, omega {[float(x) for x in named]}"
             ),
+            lambda: (
+                _exactly(self._moments),
+                _exactly([self._pull]),
+                _exactly(named),
+                _exactly(frame.exact_start(attitude)),
+                frame.space,
+                frame.axes,
+            ),
         )
+
+
+def _exactly(values: Sequence[Number]) -> list[Number]:
+    """Return numbers as a list hi, lo, hi, lo, .. with the numbers themselves for hi and zeros for lo."""
+    return [part for value in values for part in (value, 0.0)]
 
 
 class Frame:
@@ -173,9 +187,18 @@ class Frame:
         # rounded as in symrot.closed_form.arithmetic.pairs.attitude
         if self.plain:
             return attitude(quaternion)
+        integers, shared = self._converted(quaternion)
+        return on_grid([(x, shared) for x in integers])
+
+    def exact_start(self, quaternion: Sequence[Number]) -> list[Fraction]:
+        """Convert the attitude ``quaternion`` to the axes of this frame; return its four components."""
+        integers, shared = self._converted(quaternion)
+        return [Fraction(x, shared) for x in integers]
+
+    def _converted(self, quaternion: Sequence[Number]) -> tuple[list[int], int]:
         integers, shared = over_common_denominator(quaternion)
         if self._before is not None:
             integers, shared = list(hamilton(self._before[0], integers)), shared * self._before[1]
         if self._after is not None:
             integers, shared = list(hamilton(integers, self._after[0])), shared * self._after[1]
-        return on_grid([(x, shared) for x in integers])
+        return integers, shared

@@ -10,7 +10,11 @@ typedef struct {
     dd s1, s2, below, low;                            /* S1, S2, -S3, 2 - S1 */
     dd gap12, gap23, gap13, modulus, complement, rate, u;
     dd ya, yb; /* zeros of theta1 and theta2 */
+    double doubt; /* estimate of the relative error of S2 - S3, where it is a difference of larger numbers */
 } nutation;
+
+/* Relative error of a sum or product of a few numbers. */
+#define ROUNDING 0x1p-103
 
 static double outer_root(double b, double c, double d, double x)
 {
@@ -67,13 +71,22 @@ static void find_roots(nutation *n, dd w2, dd y)
     first = first < 0.0 ? 0.0 : first;
     const double between = -b.hi - first - last;
     dd x1, x2, x3;
+    n->doubt = 0.0;
     if (first - between >= between - last) {
         x1 = first > 0.0 ? polished(b, c, d, first) : dd_of(0.0);
         n->s1 = dd_add(n->s, x1);
         const dd p = dd_div(dd_square(n->d), dd_mul(m2, n->s1)); /* -S2 S3 */
         const dd em2 = dd_sub(w2, dd_mul(m2, n->s));             /* 2 (E - M) */
         const dd sum = dd_div(dd_add(dd_div(dd_sub(dd_mul(n->d, n->spin), em2), n->pull), p), n->s1); /* S2 + S3 */
-        n->gap23 = dd_sqrt(dd_add(dd_square(sum), dd_scale(p, 4.0)));
+        const dd square23 = dd_add(dd_square(sum), dd_scale(p, 4.0));
+        n->gap23 = dd_sqrt(square23);
+        if (square23.hi > 0.0) {
+            const double momentum = sqrt(w2.hi*n->s.hi*n->c.hi) + fabs(n->spin.hi)*n->s.hi, slip = ROUNDING*momentum;
+            const double p_error = (2.0*fabs(n->d.hi)*slip + slip*slip)/(m2.hi*n->s1.hi) + ROUNDING*p.hi;
+            const double e_error = ROUNDING*(w2.hi + m2.hi*n->s.hi) + fabs(n->spin.hi)*slip;
+            const double sum_error = (e_error/n->pull.hi + p_error)/n->s1.hi;
+            n->doubt = (2.0*fabs(sum.hi)*sum_error + sum_error*sum_error + 4.0*p_error)/square23.hi;
+        }
         const dd larger = dd_scale(dd_add(n->gap23, dd_abs(sum)), 0.5);
         n->s2 = sum.hi >= 0.0 ? larger : ratio(p, larger);
         n->below = sum.hi >= 0.0 ? ratio(p, larger) : larger;

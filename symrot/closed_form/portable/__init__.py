@@ -1,5 +1,7 @@
 """Motions in closed form that need no C compiler: mpmath computes the constants, NumPy the samples.
 
+They also compute heavy tops so near to the separatrix that the 31 digits of C do not determine the motion.
+
 The formulas are the same as in the C files. The motions are slower (milliseconds for the constants, about a microsecond
 for each sample) but equally accurate, since constants have 120 digits. Tests compare the samples with those of the C
 code.

@@ -60,7 +60,8 @@ class PortableFreeBody:
     Raises
     ------
     ValueError
-        If a moment is not positive, or if the quaternion is zero.
+        If a moment is not positive, if the quaternion is zero, or if the rotation is about the middle axis except for
+        components of ``omega`` that are not zero but below 1e-150 of the largest: such a rotation is unstable.
     """
 
     @digits(DIGITS)
@@ -86,7 +87,10 @@ class PortableFreeBody:
             for i, rate in enumerate(w):  # rotation about the middle axis is unstable
                 middle = differences[i - 2] * differences[i - 1] > 0
                 if middle and rate and sum(x != 0 for x in vector(omega)) > 1:
-                    raise ValueError("expected components of omega of moderate ratios")
+                    raise ValueError(
+                        "expected omega exactly along the middle axis, or with another component above 1e-150 of the "
+                        f"largest, got {[float(x) for x in vector(omega)]}"
+                    )
             self._steady(w, start, frame)
             return
         self._elliptic(moments, w, differences, defect, start, frame)

@@ -3,11 +3,13 @@
 The formulas are the same as in :file:`circular.h` and :file:`stages.h`.
 """
 
+from collections.abc import Sequence
 from typing import Any, NamedTuple
 
 import numpy as np
 
 from symrot.closed_form.arithmetic.double_double import two_product, two_sum
+from symrot.closed_form.arithmetic.pairs import Number
 from symrot.closed_form.build import Floats
 from symrot.formula.precision import mp
 
@@ -25,13 +27,14 @@ LARGEST = 80.0  # argument of a hyperbolic function above which the results are 
 MOST_REVOLUTIONS = 2.0**56  # as in circular.h: pairs of doubles give a phase to 1e-13 revolutions within this number
 
 
-def number(high: float, low: float) -> Any:
-    """Return the sum of two doubles as one mpmath number, at mpmath's current precision."""
-    return mpf(high) + mpf(low)
+def number(high: Number, low: float) -> Any:
+    """Return ``high + low`` as one mpmath number, at mpmath's current precision."""
+    top, bottom = high.as_integer_ratio()
+    return mpf(top) / bottom + mpf(low)
 
 
-def vector(pairs: list[float]) -> list[Any]:
-    """Convert a list hi, lo, hi, lo, .. of doubles to mpmath numbers, one for each sum hi + lo."""
+def vector(pairs: Sequence[Any]) -> list[Any]:
+    """Convert a list hi, lo, hi, lo, .. of numbers to mpmath numbers, one for each sum hi + lo."""
     return [number(high, low) for high, low in zip(pairs[::2], pairs[1::2], strict=True)]
 
 

@@ -75,9 +75,9 @@ def checked_system(program: Program, edges: Sequence[int], scales: Sequence[floa
     count = len(system.states)
     if [*edges[:1], *edges[-1:]] != [0, count] or list(edges) != sorted(set(edges)) or len(scales) != len(edges) - 1:
         raise InputError(
-            f"blocks: expected block edges that increase from 0 to {count} (the number of states), and one scale per "
-            "block, the size to which its errors are relative (a block is a group of consecutive states whose errors "
-            f"are measured together), got edges {list(edges)} and scales {list(scales)}"
+            f"blocks: expected block edges that increase from 0 to {count} (the number of states), and one scale for "
+            f"each block, got edges {list(edges)} and scales {list(scales)}; a block is a group of consecutive states "
+            "whose errors are measured together, relative to the scale of the block"
         )
     return system
 

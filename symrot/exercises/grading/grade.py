@@ -41,7 +41,7 @@ def grade(exercises: Exercise | ExerciseSheet, answers: Mapping[str, str] | Sequ
     ------
     InputError
         If there is an answer to a question that does not exist, if a sequence has more answers than there are
-        questions, or if the answers are one text.
+        questions, or if ``answers`` is one string.
 
     Examples
     --------
@@ -53,12 +53,12 @@ def grade(exercises: Exercise | ExerciseSheet, answers: Mapping[str, str] | Sequ
     questions = dict(_keyed(exercises))
     if isinstance(answers, str):
         raise InputError(
-            f"answers: expected a list of texts, or a mapping from question to text, got the text {answers[:60]!r}"
+            f"answers: expected a list of strings, or a dict from question to string, got the string {answers[:60]!r}"
         )
     if not isinstance(answers, Mapping):
         if len(answers) > len(questions):
             raise InputError(
-                f"answers: expected at most {len(questions)} texts, one for each question, got {len(answers)}"
+                f"answers: expected at most {len(questions)} answers, one for each question, got {len(answers)}"
             )
         answers = dict(zip(questions, answers, strict=False))
     unknown = [key for key in answers if key not in questions]
