@@ -67,8 +67,9 @@ class NamedFormula(NamedTuple):
 
 
 def named_formula(claim: Claim) -> NamedFormula | None:
-    """Return T and its formula for a claim such as ``T = m v^2/2``; None if T has a definition, and for other
-    claims.
+    """Return the name and the formula of a quantity for a claim such as ``T = m v^2/2``; None for other claims.
+
+    None also if the quantity is pi, the time t, or a name that has a formula in ``claim.define``.
     """
     assert claim.relation is not None
     _, left, right = claim.relation
