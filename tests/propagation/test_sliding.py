@@ -58,6 +58,31 @@ def test_a_switch_that_brakes_by_its_square_slides():
     assert abs(symrot.propagator(made, "auto", 1e-10)([0, 5]).omega[-1][1] - 1.0) < 20 * 1e-10
 
 
+@pytest.mark.parametrize("stop", [0.6, 1.0, 2.0, 5.0])
+@pytest.mark.parametrize("method", ["auto", "dop853"])
+def test_a_switch_that_is_released_and_crossed_at_once_is_noticed(method, stop):
+    """At 0.5524 s the rates lead around the place where two switches meet: the body stays there, on both switches.
+
+    The switch that was left first was crossed again at this time, after the other one had switched. Rounding decided
+    whether this was noticed: if not, omega was off by up to 0.01 in silence.
+    """
+    disc, line = "omega_3**2 + omega_1**2 - 981/1000", "omega_3*omega_2 + 127/500"
+    third = "omega_3 - 917/1000*sin(2519/1000*t)"
+    made = scene(
+        f"-178/1000*omega_2 + 948/1000*sin(2696/1000*t + 254/1000) - 2086/1000*sign({disc})",
+        f"702/1000 + 107/1000*sign({third})",
+        f"-3/10*omega_3 - 1635/1000*sign({disc}) - 1324/1000*sign({line}) - 860/1000*sign({third})",
+        omega=("875/1000", "122/1000", 0),
+    )  # fmt: skip
+    try:
+        omega = symrot.propagator(made, method, 1e-9)([0.56, 0.58, stop]).omega[:2]
+    except PropagationError as stopped:
+        assert "beyond t = 0.55238568" in str(stopped)
+    else:
+        assert abs(omega[:, 2] ** 2 + omega[:, 0] ** 2 - 0.981).max() < 1e-6
+        assert abs(omega[:, 2] * omega[:, 1] + 0.254).max() < 1e-6
+
+
 @pytest.mark.thinned(2)
 @pytest.mark.parametrize("torque", [
     "floor(omega_1)", "sign(omega_1**3)", "step(min(2 - t, 2*omega_1))", "sin(floor(step(omega_1)))",

@@ -153,6 +153,8 @@ class ModeChanges(Guards):
         self.flipped[mode] = again + 1
         self.changes[self.now, self._name(mode)] = "released" if mode in self.held else "passed"
         asleep = self._asleep()
+        if mode not in self.held:
+            self.released = set()  # this switch changes the rates: arguments that left zero slowly may now cross it
         if mode in self.held:
             self.held -= {mode}
             self.modes |= _signed(self.system.twins[mode], change)
