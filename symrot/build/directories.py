@@ -69,7 +69,7 @@ def foreign(path: Path) -> str:
     if stat.S_ISLNK(status.st_mode):
         return f"{path} is a symbolic link"
     if not (stat.S_ISREG(status.st_mode) or stat.S_ISDIR(status.st_mode)):
-        return f"{path} is no regular file"
+        return f"{path} is neither a regular file nor a directory"
     return ""
 
 

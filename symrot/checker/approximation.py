@@ -1,4 +1,7 @@
-"""Approximations for small values of a letter, ``sin θ ≈ θ``: both sides should have the same Taylor polynomial."""
+"""Approximations for small values of a letter: ``sin θ ≈ θ`` and ``sin θ = θ + O(θ³)``.
+
+Both sides should have the same Taylor polynomial.
+"""
 
 import re
 from collections.abc import Iterator
@@ -8,7 +11,8 @@ from math import factorial
 from time import perf_counter
 from typing import Any
 
-from sympy import Expr, Integer, Poly, Symbol
+from sympy import Abs, DiracDelta, Expr, Heaviside, Integer, Max, Min, Piecewise, Poly, Symbol, nan, oo, sign, zoo
+from sympy.core.function import AppliedUndef
 
 from symrot.checker.claim.reader import read_expression
 from symrot.checker.claim.scope import is_matrix
@@ -22,12 +26,21 @@ from symrot.checker.typed.tokens import LETTERS
 from symrot.checker.verdict import Diagnosis, Repair, Verdict
 from symrot.errors import InputError
 from symrot.exact.decide import decide
+from symrot.exact.decision import flatten
 from symrot.exact.limits.operations import OutOfOperations
 from symrot.exact.printing import as_text
 
 __all__ = ["verdict_on_approximation"]
 
 SIGN = re.compile(r"≈|≃|\\(?:approx|simeq)(?![A-Za-z])")
+ORDER = re.compile(
+    r"[+\-−±]\s*(?P<sign>\\mathcal\s*\{?\s*O\s*\}?|\\mathcal O|[Oo])\s*(?:\\left)?\s*\("
+    r"\s*(?P<letter>\\?[A-Za-z]+|[α-ω])\s*(?:(?:\^|\*\*)\s*(?:(?P<power>\d+)|\{\s*(?P<braced>\d+)\s*\})|(?P<raised>[²³⁴-⁹]))?"
+    r"\s*(?:\\right)?\s*\)\s*[.,]?\s*$"
+)
+"""Pattern of the order of the terms that are left out, at the end of a text: ``+ O(θ^3)``."""
+RAISED = str.maketrans("²³⁴⁵⁶⁷⁸⁹", "23456789")
+NOT_SMOOTH = (Abs, sign, DiracDelta, Heaviside, Max, Min, Piecewise)
 MOST_POWER, MOST_LEFT_OUT = 8, 4
 """MOST_POWER is the highest power of x whose Taylor coefficients are compared for ``sin(x) ≈ x``, read for small x.
 
@@ -41,7 +54,12 @@ def verdict_on_approximation(source: str) -> Verdict | None:
     such symbol, g should be the Taylor polynomial of f in it. If f has a single such symbol, and g is no polynomial in
     it either, as in ``tan θ ≈ sin θ``, both Taylor series should agree in their first terms, one of which must be
     nonzero and contain the symbol.
+
+    Return the verdict on ``f = g + O(x^n)``, too: f - g should have no powers of x below n, and none below n + 1 for a
+    small o.
     """
+    if (order := ORDER.search(source)) and re.search("[=<>]", source[: order.start()]):
+        return _of_order(source, order)
     if len(SIGN.findall(source)) != 1 or re.search("[=<>]", source):
         return None
     start = perf_counter()
@@ -53,6 +71,57 @@ def verdict_on_approximation(source: str) -> Verdict | None:
     except (OutOfOperations, TimeUp) as limit:
         return verdict_of_decision(unfinished(limit), source.strip(), start)
     return verdict and replace(verdict, text=source.strip(), seconds=perf_counter() - start)
+
+
+def _of_order(source: str, order: re.Match[str]) -> Verdict | None:
+    """Return the verdict on ``f = g + O(x^n)``; None for an equation without x.
+
+    Raise InputError for sides that cannot be read.
+    """
+    start, text = perf_counter(), source.strip()
+    try:
+        with within_limits():
+            verdict = _verdict_on_order(source[: order.start()], order)
+    except (OutOfOperations, TimeUp) as limit:
+        return verdict_of_decision(unfinished(limit), text, start)
+    except _Unknown:
+        verdict = Verdict("undecided", reason=f"the Taylor series for small {order['letter']} is not known")
+    return verdict and replace(verdict, text=text, seconds=perf_counter() - start)
+
+
+def _verdict_on_order(source: str, order: re.Match[str]) -> Verdict | None:
+    equation = claim_of_text(source).equation
+    small = claim_of_text(f"{order['letter']} = 0").equation.left
+    (lefts, shape), (rights, other) = flatten(equation.left), flatten(equation.right)
+    name = str(small)
+    letters = {symbol for entry in (*lefts, *rights) for symbol in entry.free_symbols}
+    letter = next((symbol for symbol in letters if str(symbol) == name), None)
+    if letter is None or shape != other:
+        return None
+    power = int((order["power"] or order["braced"] or order["raised"] or "1").translate(RAISED))
+    written = f"{name}^{power}" if power > 1 else name
+    least = power + (order["sign"] == "o")
+    own = {symbol for entry in lefts for symbol in entry.free_symbols}
+    if letters - own or letter not in own:
+        reason = f"{order['sign']}({written}) stands for terms that are left out, and the equation may define a name"
+        return Verdict("definition", reason=reason)
+    if any(entry.has(AppliedUndef) for entry in (*lefts, *rights)):
+        return Verdict("undecided", reason="Taylor series of functions of time are not compared")
+    if least > MOST_POWER + 1:
+        return Verdict("undecided", reason=f"orders above {MOST_POWER} are not compared")
+    note = (
+        f"{order['sign']}({written}) is read as terms with {name}^{least} and higher powers of {name}, for small {name}"
+    )
+    try:
+        for left, right in zip(lefts, rights, strict=True):
+            for n, coefficient in enumerate(islice(_coefficients(left - right, letter), least)):
+                if not _agree(coefficient, Integer(0)):
+                    term = as_text(coefficient * letter**n)
+                    text = f"the sides differ by {term}, a term of the order {n}, for small {name}"
+                    return Verdict("false", notes=(note,), diagnosis=Diagnosis("derived", text))
+    except InputError:
+        raise _Unknown from None
+    return Verdict("true", notes=(note,))
 
 
 def _verdict(source: str) -> Verdict | None:
@@ -134,8 +203,8 @@ def _on_polynomial(source: str, left: Expr, right: Expr, letter: Symbol, degree:
         reason = f"it is not the Taylor polynomial {polynomial} for small {letter}, but may be another approximation"
         return replace(verdict, verdict="undecided", reason=reason, notes=())
     text = f"the coefficient of the power {agreed.index(False)} of {letter} is wrong"
-    sign = next(SIGN.finditer(source))
-    repair = Repair(f"{source[: sign.start()].strip()} {sign[0]} {polynomial}", "derived", COST["factor"])
+    mark = next(SIGN.finditer(source))
+    repair = Repair(f"{source[: mark.start()].strip()} {mark[0]} {polynomial}", "derived", COST["factor"])
     return replace(verdict, verdict="false", diagnosis=Diagnosis("derived", text), repairs=(repair,))
 
 
@@ -144,8 +213,8 @@ def _written(formula: Any, source: str) -> str:
     if is_latex(source):
         return LatexNotation().formula(read_expression(as_text(formula)))
     typed = as_text(formula).replace("**", "^")
-    for sign in {*source} & {*LETTERS}:
-        typed = re.sub(rf"\b{LETTERS[sign]}\b", sign, typed)
+    for mark in {*source} & {*LETTERS}:
+        typed = re.sub(rf"\b{LETTERS[mark]}\b", mark, typed)
     return typed
 
 
@@ -159,7 +228,8 @@ def _coefficients(formula: Expr, letter: Symbol) -> Iterator[Expr]:
     """
     for power in count():
         value = formula.subs(letter, 0) / factorial(power)
-        if not value.is_finite and value.is_finite is not None:
+        is_infinite = value.has(nan, zoo, oo) or value.is_finite is False
+        if is_infinite or any(letter in part.free_symbols for part in formula.atoms(*NOT_SMOOTH)):
             raise InputError(f"expected a formula with a Taylor series for small {letter}")
         yield value
         formula = formula.diff(letter)

@@ -76,7 +76,7 @@ def check(
     right : Expr or Matrix, optional
         The right side, if ``left`` is a SymPy expression or matrix.
     assume : sequence
-        Hypotheses. If the claim is a text: texts ``"a == b"``, ``"x > 0"``, ``"x != 0"``. If it is a SymPy value:
+        Hypotheses. If the claim is a string: strings ``"a == b"``, ``"x > 0"``, ``"x != 0"``. If it is a SymPy value:
         equations ``Eq(a, b)``, or expressions; ``a - b`` means that a - b is zero.
     units : mapping of str to str, optional
         Units by the name of a symbol, ``{"x": "m"}``. Names such as ``I1``, ``omega_1`` and ``g``, and the symbols of
@@ -125,7 +125,7 @@ def check(
         raise InputError(f"units: expected a mapping like {{'x': 'm'}} from names to units, got {units!r}")
     if stated and not isinstance(left, str):
         raise InputError(
-            "where, body, frame, sequence: expected these options only with a claim that is a text, got a SymPy value"
+            "where, body, frame, sequence: expected these options only with a claim that is a string, got a SymPy value"
         )
     try:
         return _checked(left, right, assume, units, repair, stated)
@@ -138,10 +138,10 @@ def _checked(
 ) -> Verdict:
     if isinstance(left, str):
         if right is not None:
-            raise InputError("expected the whole claim 'left == right' as one text, got two arguments")
+            raise InputError("expected the whole claim 'left == right' as one string, got two arguments")
         if isinstance(assume, str) or not isinstance(assume, Collection) or not all(isinstance(a, str) for a in assume):
             raise InputError(
-                f"assume: expected a list of texts like 'a == b', since the claim is a text, got {assume!r}"
+                f"assume: expected a list of strings like 'a == b', since the claim is a string, got {assume!r}"
             )
         typed = _without_backticks(left).lstrip()  # places in the text count from its first character
         check_length(typed)  # before any search in the text, whose time grows with its length
@@ -166,8 +166,8 @@ def _checked(
     if right is None and getattr(left, "rel_op", "") == "==":
         left, right = left.args
     if right is None:
-        raise InputError("expected two sides, or one text 'left == right'")
-    if not isinstance(assume, Iterable):
+        raise InputError("expected two sides, or one string 'left == right'")
+    if isinstance(assume, str) or not isinstance(assume, Iterable):
         raise InputError(f"assume: expected a list of hypotheses, such as [Eq(a, b)], got {assume!r}")
     for side in (left, right):
         for entry in flatten(side)[0]:

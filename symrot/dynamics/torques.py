@@ -223,7 +223,8 @@ def _finite_formula(source: str, values: Mapping[str, Expr]) -> Expr:
     for size in () if has_switches(node) else result.atoms(sympy.Abs):  # made by SymPy, so that no switch is known
         if size.free_symbols & set().union(*(values[name].free_symbols for name in CHANGING & set(values))):
             raise InputError(
-                f"torque: expected a formula whose kinks are written with abs, got {source!r}; write "
+                f"torque: expected every absolute value to be written with abs, got {source!r}, which contains the "
+                f"absolute value of {size.args[0]} in another form, as sqrt(x^2) is that of x; write "
                 f"abs({size.args[0]})"
             )
     return result

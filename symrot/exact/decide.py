@@ -150,8 +150,8 @@ class _FormulaCase(Case):
         nowhere = next((need for need in needs_of(self.sides) if fails_everywhere(need)), None)
         if nowhere is not None:
             raise InputError(
-                "expected sides that are real numbers somewhere, "
-                f"but the condition '{nowhere}', which they need, holds at no real point"
+                "expected sides that are real for some real values of their symbols, but the sides are real only under "
+                f"the condition '{nowhere}', which no real values satisfy"
             )
         nonzero = [Need(condition.lhs, "!= 0") for condition in self.conditions if isinstance(condition, Ne)]
         if known_point([*(need for need in needs if need.sign != "real"), *nonzero]) is None:

@@ -10,7 +10,7 @@ from dataclasses import dataclass, field
 from functools import cached_property
 from typing import Any, TypeVar
 
-from sympy import Expr, Integer, MatrixBase, MatrixExpr, sympify
+from sympy import Expr, Integer, MatrixBase, MatrixExpr, SympifyError, sympify
 
 from symrot.errors import InputError
 from symrot.exact.congruence_closure import proof_by_congruence
@@ -276,9 +276,12 @@ def flatten(expression: Any) -> tuple[list[Expr], Shape]:
     Raises
     ------
     InputError
-        If the formula is neither a scalar nor a matrix of scalars.
+        If the formula is neither a scalar nor a matrix of scalars. Text is not read as a formula.
     """
-    expression = sympify(expression)
+    try:
+        expression = sympify(expression, strict=isinstance(expression, str))
+    except SympifyError:
+        raise InputError(f"expected a formula or a matrix of formulas, got {expression!r}") from None
     if isinstance(expression, MatrixExpr):
         expression = expression.as_explicit()
     if isinstance(expression, MatrixBase):

@@ -9,7 +9,7 @@ __all__ = ["path_of"]
 
 
 def path_of(value: object, place: str) -> Path:
-    """Return the path that an argument names; raise InputError, with the name ``place``, if it is no text or path."""
+    """Return the path that an argument names; raise InputError, with the name ``place``, if it is no string or path."""
     if not isinstance(value, str | PathLike):
-        raise InputError(f"{place}: expected the path of a file, as a text or Path, got {repr(value)[:60]}")
+        raise InputError(f"{place}: expected the path of a file, as a string or Path, got {repr(value)[:60]}")
     return Path(value)

@@ -42,7 +42,7 @@ def refuse_special(path: Path) -> os.stat_result:
 
 def _refuse_mode(mode: int) -> None:
     if not stat.S_ISREG(mode):
-        raise OSError(EINVAL, next((name for shows, name in SPECIAL if shows(mode)), "no regular file"))
+        raise OSError(EINVAL, next((name for shows, name in SPECIAL if shows(mode)), "a special file"))
 
 
 def read_input(path: Path, largest: int) -> bytes:

@@ -91,9 +91,9 @@ def _step(page: Page, number: Number) -> Step:
             if step.claim.startswith(number.step) and number.section in ("", section):
                 return step
     raise InputError(
-        f"{page.name}, {number.words!r}: expected `step`, the first words of a claim on this page"
-        f"{f' in the section {number.section!r}' if number.section else ''}, got {number.step!r}, with which no claim "
-        "begins"
+        f"{page.name}, {number.words!r}: expected as `step` the first words of a claim on this page"
+        f"{f' in the section {number.section!r}' if number.section else ''}, but no claim there begins with "
+        f"{number.step!r}"
     )
 
 

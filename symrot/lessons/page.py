@@ -96,8 +96,8 @@ def _divided(page: Page, sections: Sequence[str]) -> tuple[Items, Items]:
     titles = [item.title for item in page.items if isinstance(item, Section)]
     if [*sections] != titles[len(titles) - len(sections) :]:
         raise InputError(
-            f"{page.name}: expected the appendix to consist of the last sections of the page, whose sections are "
-            f"{titles}, got {[*sections]}"
+            f"{page.name}: expected as `library` of the lesson the titles of the last sections of the page, in order, "
+            f"got {[*sections]}; the titles of all sections are {titles}"
         )
     places = (n for n, item in enumerate(page.items) if isinstance(item, Section) and item.title in sections)
     place = next(places, len(page.items))

@@ -151,8 +151,9 @@ def read_samples(
     twice = {after for before, after in pairwise(times) if after == before}
     for switch in values["switching_times"]:
         if switch not in twice:
-            fail(f"{where}.switching_times", "times that occur twice among the times of the samples, with the torque "
-                     f"before and after the jump, got {switch!r} s, which does not")  # fmt: skip
+            fail(f"{where}.switching_times", "times that occur twice among the times of the samples, first with the "
+                     f"torque before the jump and then with the torque after it, got {switch!r} s, which does not "
+                     "occur twice")  # fmt: skip
     first, last = map(float, span)
     if times[0] > first or times[-1] < last:
         fail(place, f"samples that cover the span of the scene, {first!r} to {last!r} s, got {times[0]!r} to "

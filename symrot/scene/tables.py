@@ -139,8 +139,9 @@ def _read_initial(value: Any, where: str) -> Initial:
     present = [key for key in ("omega", "omega_space") if values[key] is not None]
     if len(present) != 1:
         expectation = "exactly one of omega (body axes) and omega_space, three numbers in rad/s"
-        both = {key: value[key] for key in present}
-        fail(f"{where}.omega", expectation if both else f"{expectation}, got neither", both or ...)
+        if not present:
+            fail(f"{where}.omega", f"{expectation}, got neither")
+        fail(f"{where}.omega", expectation, {key: value[key] for key in present})
     attitude = values["attitude"] or read_attitude({"quaternion": [1, 0, 0, 0]}, where)
     omega_b = values["omega"] if present == ["omega"] else to_body(attitude.dcm, values["omega_space"])
     return Initial(omega_b, attitude.quaternion, values["omega_space"])

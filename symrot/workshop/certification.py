@@ -465,13 +465,16 @@ def _check_precision(precision: str) -> None:
         raise InputError(f"precision: expected one of {', '.join(rounding.PRECISIONS)}, got {precision!r}")
 
 
+_BOX = "a mapping such as {'x': (0, 1)}, or a list of strings such as ['x=0:1']"
+
+
 def _ranges(box: Ranges) -> Sequence[str]:
-    """Return the ranges of inputs as texts NAME=LOW:HIGH; ``box`` is a map from names to ranges, or has these texts."""
+    """Return ranges as strings ``NAME=LOW:HIGH``; ``box`` is a map from names to ranges, or has the strings."""
     if isinstance(box, str):
-        raise InputError(f"box: expected a mapping or a list of texts NAME=LOW:HIGH, got one text, {box[:60]!r}")
+        raise InputError(f"box: expected {_BOX}, got the single string {box[:60]!r}")
     if not isinstance(box, Mapping):
         if not isinstance(box, Sequence) or not all(isinstance(text, str) for text in box):
-            raise InputError(f"box: expected a mapping or a list of texts NAME=LOW:HIGH, got {exact_numbers.show(box)}")
+            raise InputError(f"box: expected {_BOX}, got {exact_numbers.show(box)}")
         return box
     texts = []
     for name, ends in box.items():

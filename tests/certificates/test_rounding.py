@@ -345,7 +345,7 @@ def test_a_bound_that_is_only_a_little_smaller_is_refused_by_bounding_again(sect
     data, kernels = section
     changed = copy.deepcopy(data)
     changed["precisions"][0]["outputs"][0]["evaluations"] += 1
-    with pytest.raises(CertificateError, match="that symrot computes on the same ranges"):
+    with pytest.raises(CertificateError, match=r"that symrot computes for dcm\[0\] on the same ranges"):
         check_section(changed, *kernels, rerun=True)
 
 

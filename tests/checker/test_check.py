@@ -7,7 +7,7 @@ import re
 
 import pytest
 from mpmath import mp, workdps
-from sympy import Eq, Matrix, cos, sin, symbols
+from sympy import Eq, Matrix, Symbol, cos, sin, symbols
 
 import symrot
 from symrot.checker.claim.reader import read_relation
@@ -198,6 +198,27 @@ def test_what_is_not_understood_is_refused_in_one_sentence(claim, words):
         symrot.check(claim)
     assert len(str(refusal.value)) < 600
     assert "\n" not in str(refusal.value)
+
+
+X = Symbol("x", real=True)
+
+
+@pytest.mark.parametrize("value", [object(), len, "x", "sqrt(", b"x", {}, None])
+def test_a_side_or_hypothesis_that_is_no_formula_is_refused_in_one_sentence(value):
+    for call in (
+        lambda: symrot.check(X, value),
+        lambda: symrot.check(value, X),
+        lambda: symrot.check(X, X, assume=[value]),
+    ):
+        with pytest.raises(symrot.errors.InputError, match=r"^expected [^.\n]*$"):
+            call()
+
+
+def test_the_text_of_a_side_is_never_run():
+    with pytest.raises(symrot.errors.InputError, match=r"expected a formula or a matrix of formulas, got .__import__"):
+        symrot.check(X, "__import__('os').abort()")
+    with pytest.raises(symrot.errors.InputError, match="expected a list of hypotheses"):
+        symrot.check(X, X, assume="x > 0")
 
 
 @pytest.mark.parametrize(

@@ -95,7 +95,7 @@ FAULTS = (
     ("schema = 1", "", "schema = 1"),
     ('where = "p. 17"', "where = 17", "where: expected a text"),
     ('where = "p. 17"', 'verdict = "true"', "got 'verdict'"),
-    ('symbols = ["t"]', 'symbols = "t"', "a list of texts"),
+    ('symbols = ["t"]', 'symbols = "t"', "a list of strings"),
     ('symbols = ["t"]', 'symbols = ["t", "t"]', "every name once"),
     ('symbols = ["t"]', 'symbols = ["phi"]', "declared once, got 'phi' twice"),
     ('symbols = ["t"]', 'symbols = ["sin"]', "built in"),

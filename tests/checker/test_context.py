@@ -253,25 +253,25 @@ def test_a_prime_is_a_rate_if_its_words_say_so():
     ({"where": ["T = moment"]}, "expected 'moment of inertia' or 'torque', got 'moment'"),
     ({"where": ["T"]}, "expected 'NAME = words'"),
     ({"where": ["T + 1 = torque"]}, "expected a name before '=', got the formula 'T . 1'"),
-    ({"where": ["T = torque, I = spin"]}, "write one text for each"),
+    ({"where": ["T = torque, I = spin"]}, "write a string of its own for each"),
     ({"where": ["Q = torque"]}, "expected meanings only of names that occur in the claim, got 'Q'"),
     ({"where": ["I, Q = moment of inertia"]}, "expected meanings only of names that occur in the claim, got 'Q'"),
-    ({"where": None}, "where: expected a list of texts like 'I = moment of inertia', got None"),
-    ({"where": (words for words in ["I = spin"])}, "where: expected a list of texts like"),
-    ({"assume": None}, "assume: expected a list of texts like 'a == b', since the claim is a text, got None"),
+    ({"where": None}, "where: expected a list of strings like 'I = moment of inertia', got None"),
+    ({"where": (words for words in ["I = spin"])}, "where: expected a list of strings like"),
+    ({"assume": None}, "assume: expected a list of strings like 'a == b', since the claim is a string, got None"),
     ({"units": ["m"]}, r"units: expected a mapping like \{'x': 'm'\} from names to units, got \['m'\]"),
     ({"where": ["I = spin", "I = torque"]}, "expected one meaning of I, got 'spin' and 'torque'"),
     ({"where": ["omega = torque"]}, "expected a quantity with the unit rad/s, which omega usually has, got 'torque'"),
     ({"where": ["T = torque"], "units": {"T": "J/s"}}, "the unit J/s as the meaning of T, since this unit is stated"),
-    ({"where": ["T = kinetic energy of a sphere"], "body": "disk"}, "a solid sphere, the body that where states for T"),
+    ({"where": ["T = kinetic energy of a sphere"], "body": "disk"}, "a solid sphere, the body that 'where' gives for T"),
     ({"where": ["omega = angular velocity in space"], "frame": "body"}, "expected the space frame"),
-    ({"where": "T = torque"}, "expected a list of texts"),
+    ({"where": "T = torque"}, "expected a list of strings"),
     ({"body": "banana"}, "body: expected a body, got 'banana'"),
     ({"frame": "bodi"}, "frame: expected 'body' or 'space', got 'bodi'"),
     ({"sequence": "ZZX"}, "sequence: expected three axes, no two neighbours equal"),
     ({"sequence": "ABC"}, "sequence: expected three axes"),
     ({"sequence": "space 1-2-3 intrinsic"}, "sequence: expected three axes"),
-    ({"body": 3}, "body: expected a text, got 3"),
+    ({"body": 3}, "body: expected a string, got 3"),
 ])  # fmt: skip
 def test_a_context_that_means_nothing_or_contradicts_is_refused(context, message):
     with pytest.raises(InputError, match=message):
@@ -296,7 +296,7 @@ def test_options_of_sympy_values_are_checked_too():
 
 
 def test_a_context_of_sympy_values_is_refused():
-    with pytest.raises(InputError, match="expected these options only with a claim that is a text"):
+    with pytest.raises(InputError, match="expected these options only with a claim that is a string"):
         symrot.check(1, 1, body="disk")
 
 

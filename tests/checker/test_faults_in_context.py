@@ -91,5 +91,18 @@ def test_a_formula_for_principal_axes_is_none_for_the_space_frame(claim):
     assert symrot.check(claim, frame="space").verdict not in ("true", "recognised")
 
 
+@pytest.mark.parametrize("axis", [1, 2, 3])
+@pytest.mark.parametrize("frame", ["body", "space"])
+def test_a_quaternion_and_its_rate_are_not_exchanged(axis, frame):
+    """ω = 2 q* q' in the body frame and 2 q' q* in space differ by the sign of a cross product of q and q'."""
+    j, k = axis % 3 + 1, (axis + 1) % 3 + 1
+    crossed = {"body": f"- q_{j} q_{k}' + q_{k} q_{j}'", "space": f"+ q_{j} q_{k}' - q_{k} q_{j}'"}
+    for other, terms in crossed.items():
+        claim = f"ω_{axis} = 2(q_0 q_{axis}' - q_{axis} q_0' {terms})"
+        verdict = symrot.check(claim, frame=frame, repair=False)
+        assert (verdict.verdict in ("true", "recognised")) == (other == frame)
+        assert not any("derives" in note for note in verdict.notes)
+
+
 def test_an_equation_of_vectors_holds_in_both_frames():
     assert symrot.check("M = I ω' + ω × I ω", frame="space").verdict == "true"

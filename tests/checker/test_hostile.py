@@ -162,7 +162,7 @@ FILES = {
          "\nclaim = 'f30 == 0'").encode(), "at most 200000 symbols",
     ),
     "a name of Python": ((CLAIM + "symbols = ['__class__']\nclaim = 'x == 1'").encode(), "letters, digits"),
-    "a number for a claim": ((CLAIM + "claim = 3").encode(), "expected text"),
+    "a number for a claim": ((CLAIM + "claim = 3").encode(), "expected a string"),
 }  # fmt: skip
 
 

@@ -373,3 +373,13 @@ def test_an_inverse_function_limits_the_angle(claim, note):
 def test_every_formula_that_only_its_letters_name_is_a_known_formula():
     names = {known.name for formulas in by_fingerprint().values() for known in formulas if known.only_named}
     assert {*SCALAR_PRODUCTS, *ANY_VECTORS, *GENERAL, *OF_ONE_ENTRY, GYROSCOPE} <= names
+
+
+@pytest.mark.parametrize(
+    "formula", ["T = {}2π√(L/g)", "T = {}1/2 I ω^2", "I = {}1/2 m r^2", "I_zz = {}m (a^2 + b^2)/12"]
+)
+def test_a_positive_quantity_has_no_minus_sign(formula):
+    assert symrot.check(formula.format(""), repair=False).verdict == "recognised"
+    verdict = symrot.check(formula.format("-"))
+    assert verdict.verdict == "doubtful"
+    assert symrot.check(verdict.repairs[0].text, repair=False).verdict == "recognised"

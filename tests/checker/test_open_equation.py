@@ -87,3 +87,14 @@ def test_an_equation_with_irrational_coefficients_is_solved(claim, values):
 @pytest.mark.parametrize("claim", ["y^2 == pi", "y^2 + pi = 0", "x^3 = pi", "y^2 = exp(x)"])
 def test_an_irrational_equation_that_is_not_solved_ends_in_a_verdict(claim):
     assert symrot.check(claim).verdict in ("false", "definition")
+
+
+@pytest.mark.parametrize("claim", ["det(A - λ I) = 0", "λ^3 - tr(A) λ^2 + (tr(A)^2 - tr(A^2))/2 λ - det A = 0"])
+def test_the_characteristic_equation_of_a_matrix_is_no_identity(claim):
+    assert symrot.check(claim).verdict == "definition"
+    assert symrot.check(f"{claim[:-4]} - ({claim[:-4]}) = 0").verdict == "true"
+
+
+@pytest.mark.parametrize("claim", ["tr R = 3 q_0^2 - q_1^2 - q_2^2 - q_3^2", "[ω]× = R^T R'"])
+def test_a_claim_with_letters_that_depend_on_a_rotation_is_not_denied(claim):
+    assert not any("does not hold for all rotations" in note for note in symrot.check(claim).notes)

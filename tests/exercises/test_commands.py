@@ -78,7 +78,7 @@ def test_bad_usage_is_one_sentence_and_exit_code_2(capsys, arguments, words):
 @pytest.mark.parametrize("content, words", [
     ("[1]", "expected the JSON"), ("{", "expected JSON"), ('{"schema": 9}', "schema 1"), ('{"schema": 1}', "expected the JSON"),
     ('{"schema": 1, "exercises": ["x"]}', "expected the JSON"),
-    (symrot.exercise("rod_about_end").json().replace('"number"', '"essay"'), "unknown kind"),
+    (symrot.exercise("rod_about_end").json().replace('"number"', '"essay"'), "has the kind"),
     (symrot.exercise("rod_about_end").json().replace('"decimal": "4"', '"decimal": "four"'), "could not convert"),
 ])  # fmt: skip
 def test_a_file_that_is_no_sheet_is_refused(capsys, tmp_path, content, words):

@@ -250,7 +250,7 @@ def test_a_path_that_is_no_text_is_refused(path):
         lambda: symrot.sweep("t_handle", {"omega_1": "values(1)"}, outputs="omega@end", path=path),
     ]  # fmt: skip
     for use in uses:
-        with pytest.raises(InputError, match="expected the path of a file, as a text or Path, got"):
+        with pytest.raises(InputError, match="expected the path of a file, as a string or Path, got"):
             use()
 
 

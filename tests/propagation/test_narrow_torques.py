@@ -506,6 +506,6 @@ def test_the_closed_forms_are_integrals_of_the_torques():
 def test_a_bend_that_only_sympy_sees_is_refused():
     """exp(log(u^2)/2) is abs(u); no step may pass its bend unnoticed."""
     with pytest.raises(
-        symrot.InputError, match=r"torque: expected a formula whose kinks are written with abs, .* write abs\(t - 5\)"
+        symrot.InputError, match=r"torque: expected every absolute value to be written with abs, .* write abs\(t - 5\)"
     ):
         symrot.propagate(scene("exp(-1000*exp(log((t - 5)**2)/2))", stop=10))

@@ -406,7 +406,7 @@ def _other_entry(section, name, value=1):
     (_other_parameter, "the parameters that the certificate states"),
     (_other_entry("", "step", []), "a method that symrot knows"), (_other_entry("", "step", None), "that symrot knows"),
     (_other_entry("", "step", {"method": "rk4"}), "a method that symrot knows: 'order'"),
-    (_other_entry("step", "jacobian", [1]), "a method that symrot knows: 'jacobian' is no list of names"),
+    (_other_entry("step", "jacobian", [1]), "a method that symrot knows: 'jacobian' is not a list of names"),
 ])  # fmt: skip
 def test_forged_certificates_are_refused(certified, tmp_path, change, message):
     with pytest.raises(CertificateError, match=message):

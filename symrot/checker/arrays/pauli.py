@@ -65,7 +65,9 @@ def with_pauli_matrices(relation: Relation, known: Collection[str]) -> tuple[Rel
     is_evident = (IMAGINARY in used and len(sigmas) > 1) or multiplied or of_matrix or _is_square(left, right)
     # the claim itself defines one of the names
     is_known = bool({*known} & {*matrices, IMAGINARY})
-    if not matrices or names_another or not is_plain or not is_evident or is_known:
+    # sigma_1^2 - sigma_1 sigma_2 + sigma_2^2 = sigma_y^2 is about stresses
+    is_mixed = len({name[-1].isdigit() for name in matrices}) > 1 and IMAGINARY not in used
+    if not matrices or is_mixed or names_another or not is_plain or not is_evident or is_known:
         return relation, ()
     define = tuple((name, _real(NAMES[name])) for name in matrices)
     define = (*define, (IMAGINARY, _real(((1j, 0), (0, 1j)))), (UNIT_MATRIX, eye()))
@@ -81,15 +83,23 @@ def _is_product_of_matrices(node: Node) -> bool:
 
 
 def _is_square(left: Node, right: Node) -> bool:
-    """Return whether an equation gives the square of a sum of Pauli matrices: ``(a sigma_x + sigma_y)^2 = a^2 + 1``."""
+    """Return whether an equation gives the square of a formula with Pauli matrices by its other letters, or by another
+    such square: ``(a sigma_x + sigma_y)^2 = a^2 + 1``, ``(b sigma_x)^2 = (b sigma_y)^2``.
+    """
+    # for numbers sigma_x and sigma_y, both sides would contain the same ones
     for side, other in ((left, right), (right, left)):
-        bases = [node.args[0] for node in nodes_of(side) if node.kind == "power" and node.args[1] == number(2)]
-        squared = any(len(names_in(base) & {*NAMES}) > 1 for base in bases)
-        # the other side has no Pauli matrix and no new letter: for numbers sigma_x and sigma_y, both sides would
-        # contain them
-        if squared and not names_in(other) & {*NAMES} and names_in(other) <= {*names_in(side), UNIT_MATRIX}:
+        if _squared_in(side) and not names_in(other) & {*NAMES} and names_in(other) <= {*names_in(side), UNIT_MATRIX}:
             return True
-    return False
+    matrices = [names_in(side) & {*NAMES} for side in (left, right)]
+    letters = [names_in(side) - {*NAMES, UNIT_MATRIX} for side in (left, right)]
+    are_squared = all(own and own == _squared_in(side) for own, side in zip(matrices, (left, right), strict=True))
+    return are_squared and letters[0] == letters[1] and not matrices[0] & matrices[1]
+
+
+def _squared_in(side: Node) -> set[str]:
+    """Return the Pauli matrices in the squares of a formula."""
+    bases = [node.args[0] for node in nodes_of(side) if node.kind == "power" and node.args[1] == number(2)]
+    return names_in(*bases) & {*NAMES}
 
 
 def commutator(first: Node, second: Node, sign: str = "-") -> Node | None:

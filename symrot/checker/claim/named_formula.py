@@ -67,8 +67,9 @@ class NamedFormula(NamedTuple):
 
 
 def named_formula(claim: Claim) -> NamedFormula | None:
-    """Return T and its formula for a claim such as ``T = m v^2/2``; None if T has a definition, and for other
-    claims.
+    """Return the name and the formula of a quantity for a claim such as ``T = m v^2/2``; None for other claims.
+
+    None also if the quantity is pi, the time t, or a name that has a formula in ``claim.define``.
     """
     assert claim.relation is not None
     _, left, right = claim.relation
@@ -152,6 +153,7 @@ def related_formula(claim: Claim) -> NamedFormula | None:
     generic = {name for name, tree in claim.define if is_components(name, tree)}
     is_condition = _is_condition_on_vectors(left, right, bool(claim.hypotheses))
     is_condition = is_condition or _is_condition_on_matrix(left, right, generic)
+    is_condition = is_condition or (not claim.hypotheses and _is_equation_of_matrix(claim, left, right, generic))
     if is_condition or _has_own_angle(left, right, generic) or _has_open_derivative(left, right, known):
         return NamedFormula(text(left), left, right, solve=None)
     always = {"pi", "t"} - {*dict(claim.define)}  # t = tan(theta/2) is no time
@@ -361,6 +363,18 @@ def _is_condition_on_matrix(left: Node, right: Node, generic: Collection[str]) -
     of_product = kinds <= {"name", "number", "neg", "product", "power", "transpose", "inverse", "eye"}
     of_value = kinds <= {"name", "number", "neg", "det", "trace"}
     return len(names) == 1 and names <= {*generic} and (of_product or of_value)
+
+
+def _is_equation_of_matrix(claim: Claim, left: Node, right: Node, generic: Collection[str]) -> bool:
+    """Return whether an equation restricts a letter by an undefined matrix: ``det(A - lambda*eye(3)) == 0``.
+
+    ``generic`` are the names of the vectors and matrices that the claim uses without giving their entries.
+    """
+    nodes = nodes_of(left, right)
+    names = {str(node.value) for node in nodes if node.kind == "name"} - {"pi"}
+    has_value = any(node.kind == "call" and node.value in ("det", "trace") for node in nodes)
+    is_open = len(names & {*generic}) == 1 and len(names) > 1 and not names - {*generic} & _known(claim)
+    return has_value and is_open and number(0) in (left, right) and not _has_hidden_zero(claim, left, right)
 
 
 def _has_own_angle(left: Node, right: Node, generic: Collection[str]) -> bool:

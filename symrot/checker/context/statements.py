@@ -75,9 +75,9 @@ def read_context(
     prefix = f"{label}: " if label else ""
     for key, value in (("body", body), ("frame", frame), ("sequence", sequence)):
         if not isinstance(value, str):
-            raise InputError(f"{prefix}{key}: expected a text, got {value!r}")
+            raise InputError(f"{prefix}{key}: expected a string, got {value!r}")
     if isinstance(where, str) or not isinstance(where, Collection) or not all(isinstance(text, str) for text in where):
-        raise InputError(f"{prefix}where: expected a list of texts like 'I = moment of inertia', got {where!r}")
+        raise InputError(f"{prefix}where: expected a list of strings like 'I = moment of inertia', got {where!r}")
     meanings = tuple(_meaning(text, f"{prefix}where: ") for text in where)
     context = Context(
         meanings,
@@ -100,8 +100,8 @@ def _meaning(text: str, prefix: str) -> Meaning:
     words = words.strip(" =")
     if "=" in words:
         raise InputError(
-            f"{prefix}expected one meaning in each text, like 'I = moment of inertia', got {text[:60]!r}; write one "
-            "text for each meaning"
+            f"{prefix}expected one meaning in each string, like 'I = moment of inertia', got {text[:60]!r}; write "
+            "a string of its own for each meaning"
         )
     frame, rest = _frame_in(plain_words(words))
     quantity, phrase = _quantity(rest, words, prefix)
@@ -289,13 +289,13 @@ def _check_consistency(context: Context, prefix: str) -> None:
         _check_unit(meaning, prefix)
         if meaning.frame and context.frame and meaning.frame != context.frame:
             raise InputError(
-                f"{prefix}frame: expected the {meaning.frame} frame, which where states for {meaning.written[0]}, got "
-                f"{context.frame!r} (state the same frame in both)"
+                f"{prefix}frame: expected the {meaning.frame} frame, which 'where' gives for {meaning.written[0]}, got "
+                f"{context.frame!r} (give the same frame in both)"
             )
         if meaning.body and context.body and meaning.body.kind != context.body.kind:
             raise InputError(
-                f"{prefix}body: expected {with_article(meaning.body.kind.title)}, the body that where states for "
-                f"{meaning.written[0]}, got {context.body.kind.title!r} (state the same body in both)"
+                f"{prefix}body: expected {with_article(meaning.body.kind.title)}, the body that 'where' gives for "
+                f"{meaning.written[0]}, got {context.body.kind.title!r} (give the same body in both)"
             )
 
 

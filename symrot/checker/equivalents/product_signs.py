@@ -4,6 +4,7 @@ symrot's formulas have ``I_xy = -integral of x*y dm``. Such a claim is therefore
 product of inertia.
 """
 
+import re
 from dataclasses import replace
 
 from symrot.checker.claim.claims import Claim
@@ -21,6 +22,12 @@ WITH_MINUS, WITHOUT_MINUS = (
     next(quantity for quantity in QUANTITIES if quantity.sign == sign) for sign in ("minus", "plus")
 )
 COORDINATES = ("x", "y", "z")
+_MARK = "(?:_?(?:prime|bar|star|cm|CM|com|COM|[A-Z]|[cg0-9]))*"
+ABOUT_A_POINT = re.compile(
+    rf"[IJP](?:_?bar)?_?(?:[A-Z]?_?([xyz]){_MARK}(?!\1)[xyz]{_MARK}|([XYZ])(?!\2)[XYZ])", re.ASCII
+)
+"""Pattern of the name of a product of inertia about another point or along other axes: I_xyG, I_xy_cm, I_bar_xy,
+I_x_primey_prime."""
 
 
 def sign_by_integral(name: Node, formula: Node) -> str:
@@ -69,15 +76,19 @@ def _changed(relation: Relation) -> Relation:
 
 
 def _is_product(tree: Node) -> bool:
-    """Return whether a tree has the name of a product of inertia: I_xy, I_xy(t), or the time derivative of one."""
+    """Return whether a tree has the name of a product of inertia: I_xy, I_xyG, I_xy(t), or its time derivative."""
     if is_derivative(tree):
         return _is_product(tree.args[0])
     is_function = tree.kind == "call" and tree.args == (TIME,)
-    stem = str(tree.value).removesuffix("_prime").removesuffix("_bar")
-    return (tree.kind == "name" or is_function) and PRODUCT_OF_INERTIA.fullmatch(stem) is not None
+    name = str(tree.value)
+    stem = name.removesuffix("_prime").removesuffix("_bar")
+    patterns = ((PRODUCT_OF_INERTIA, stem), (ABOUT_A_POINT, name))
+    return (tree.kind == "name" or is_function) and any(pattern.fullmatch(text) for pattern, text in patterns)
 
 
 def _with_other_sign(tree: Node) -> Node:
     if _is_product(tree):
         return negated(tree)
+    if tree.kind == "neg" and _is_product(tree.args[0]):
+        return tree.args[0]
     return replace(tree, args=tuple(map(_with_other_sign, tree.args)))

@@ -1,5 +1,6 @@
 """Parsing names in LaTeX: subscripts, primes, ``(t)``, marks of vectors, words in upright letters."""
 
+import re
 from collections.abc import Callable, Iterator
 from dataclasses import replace
 
@@ -33,6 +34,12 @@ MARKS_IN_SUBSCRIPTS = {
     "\\max": "max", "\\min": "min", "\\infty": "inf", ",": "_", "/": "_", ":": ":", "\\rm": "", "\\circ": "circ",
 }  # fmt: skip
 """Sign or command in a subscript -> the text for it in a name: "plus" for +."""
+
+AXES = re.compile("[xyz]{1,2}|[123]{1,2}")
+POINT = re.compile("[A-SU-Z]|cm|com|cg|CM|COM|CG")
+"""Pattern of the raised name of a point or body in ``I_{xy}^G``: a moment of inertia has no such power.
+
+T is no point: it transposes."""
 
 TOTALS = ("M", "F", "N", "T", "tau", "Gamma")
 """Letters of torques and forces: ``\\sum M`` without limits is read as one quantity, their total."""
@@ -87,6 +94,8 @@ class NamesPart(SumsPart):
                 primes = len(mark.inside.text)
             else:
                 subscript = self.subscript(mark)
+        if name in ("I", "J") and AXES.fullmatch(subscript) and (point := self.raised_point()):
+            subscript = f"{subscript}_{point}"
         if subscript == PART:
             return column_vector([Node("name", self.resolved(name, digit)) for digit in "123"])
         known = self.resolved(name, subscript)
@@ -103,6 +112,17 @@ class NamesPart(SumsPart):
             known = self.resolved(known + "_prime" * primes, "", (known + "p" * primes,))
         self.take_time_call(known)
         return self.vector(known) if known in self.crossed else Node("name", known)
+
+    def raised_point(self) -> str:
+        r"""Parse and return the raised name of a point, G in ``I_{xy}^G``; return "" and stay before anything else."""
+        mark = self.peek()
+        if not self.names.implied or not isinstance(mark, tree.Script) or mark.text != "^":
+            return ""
+        point = _letters(mark.inside).strip("()")
+        if not POINT.fullmatch(point):
+            return ""
+        self.next()
+        return point
 
     def skew_of_vector(self) -> Node | None:
         r"""Parse the bracket of ``S(\omega)`` and return the skew matrix of the vector; None for any other bracket."""
@@ -347,3 +367,10 @@ class NamesPart(SumsPart):
             return Node("call", name, (self.factor(),))
         self.next()
         return Node("call", name, tuple(self.listed(self.expression, CLOSING[opening.text])))
+
+
+def _letters(node: tree.Node) -> str:
+    """Return the letters, brackets and signs of a node of the LaTeX tree, without fonts."""
+    if isinstance(node, tree.Row):
+        return "".join(map(_letters, node.items))
+    return _letters(node.inside) if isinstance(node, tree.Font) else node.text

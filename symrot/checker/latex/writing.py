@@ -143,10 +143,17 @@ def _with_marks(name: str) -> str:
     primes = "'" * rest.count("prime")
     head = f"\\bar{{{letters[0]}}}" if "bar" in rest else letters[0]
     written = f"{head}_{{{','.join(letters[1:])}{primes}}}" if letters[1:] else head + primes
+    first, _, subscript = name.partition("_")
+    each_in_place = f"{first}_{{{subscript.replace('_prime', chr(39))}}}"  # I_{x'y'}
+    return next((text for text in (written, each_in_place) if _is_read_as(text, name)), "")
+
+
+def _is_read_as(written: str, name: str) -> bool:
+    """Return whether the LaTeX ``written`` is read as a name."""
     try:
-        return written if read_latex(f"{written} = 0").text == f"{name} == 0" else ""
+        return read_latex(f"{written} = 0").text == f"{name} == 0"
     except InputError:
-        return ""
+        return False
 
 
 class Writer:

@@ -42,11 +42,14 @@ ANGLES = {*MIDDLE, *OUTER}
 def is_consistent(renaming: Sequence[tuple[str, str]], fixed: bool = False) -> bool:
     """Return whether pairs (known name, new name) agree on the axes: not so for (omega_1, omega_x) with (I_1, I_y).
 
-    Pairs also disagree if they give one name to two quantities or two names to one, exchange an initial with a final
-    value, or exchange the middle one of three Euler angles with an outer one. With ``fixed``, each axis keeps its
-    number: 1 becomes 1 or x. Otherwise the axes may be permuted in a cycle: 1 to y, 2 to z and 3 to x.
+    Pairs also disagree if they give one name to two quantities or two names to one, exchange a quantity with its rate,
+    exchange an initial with a final value, or exchange the middle one of three Euler angles with an outer one. With
+    ``fixed``, each axis keeps its number: 1 becomes 1 or x. Otherwise the axes may be permuted in a cycle: 1 to y, 2 to
+    z and 3 to x.
     """
     pairs = [_pair_of_quantities(known, new) for known, new in renaming]
+    if not _keeps_rates(renaming):
+        return False
     if len({*pairs}) != len({known for known, _ in pairs}) or len({*pairs}) != len({new for _, new in pairs}):
         return False
     if not _keeps_time_order(dict(pairs)):
@@ -132,6 +135,30 @@ def quantity_of(name: str) -> str:
     while (inner := RATE.fullmatch(name)) is not None:
         name = next(part for part in inner.groups() if part)
     return name
+
+
+def _keeps_rates(renaming: Sequence[tuple[str, str]]) -> bool:
+    """Return whether quantities become quantities and their rates become rates.
+
+    With (q2, diff(q_2(t), t)) and (dq2, q_2(t)), return False: q_2 and its rate are exchanged.
+    """
+    orders: dict[tuple[str, str], int] = {}
+    for known, new in renaming:
+        marks = new.count("_prime")
+        quantities = quantity_of(known), quantity_of(new.replace("_prime", ""))
+        difference = _order_of_rate(new) + marks - _order_of_rate(known)
+        if orders.setdefault(quantities, difference) != difference:
+            return False
+    return True
+
+
+@cache
+def _order_of_rate(name: str) -> int:
+    """Return the order of a time derivative: 1 for ``dphi``, 2 for ``diff(phi(t), t, t)``, 0 for ``phi``."""
+    if (rate := RATE.fullmatch(name)) is None or rate[2]:
+        return 0
+    before, _, after = name.partition(quantity_of(name))
+    return after.count(", t") or len(re.findall("d", before or after.removesuffix("ot")))
 
 
 @cache

@@ -193,7 +193,7 @@ def _on_rotation_by_letter(claim: Claim, verdict: Verdict) -> Verdict:
     """Return "conditional" for a condition such as ``R R^T = I`` that all rotations R satisfy; otherwise ``verdict``.
 
     The verdict changes only for a claim about a single matrix with a letter that books use for rotations, such as R. If
-    some rotations do not satisfy the condition, the verdict gets a note that says so.
+    some rotations do not satisfy a condition without other letters, the verdict gets a note that says so.
     """
     names = matrices_of_entries(claim.define)
     if len(names) != 1 or not ROTATION.fullmatch(names[0]):
@@ -201,6 +201,9 @@ def _on_rotation_by_letter(claim: Claim, verdict: Verdict) -> Verdict:
     on_rotation = _on_rotations(claim, verdict)
     if on_rotation.verdict == "conditional":
         return replace(on_rotation, reason="", repairs=(), diagnosis=Diagnosis("none", ""))
+    letters = {name for side in (claim.relation or ())[1:] for name in names_in(side)}
+    if letters - {names[0], "pi"}:
+        return verdict  # the other letters may depend on R, as those of tr R = 1 + 2 cos(theta) do
     return replace(verdict, notes=(*verdict.notes, f"it does not hold for all rotations {names[0]}"))
 
 

@@ -25,10 +25,10 @@ PIECES = 4
 """Number of Taylor polynomials of the attitude per unit of the scaled time x: each holds on an interval of 1/PIECES."""
 
 DEGREE = 19
-"""Degree of the Taylor polynomials of the attitude near resonance, in the scaled time x.
+"""Degree of the Taylor polynomials of the attitude in the scaled time x, for the times near x = 0.
 
-On an interval of half width 1/8, the next term is near (r/2)^20/20!/8^20 < 2e-20, where r = sqrt(kappa^2 + x^2) < 13.5
-is the angular speed of the rotating axes.
+The axes rotate with the angular speed r = sqrt(kappa^2 + x^2) (see the module's text), below 13.5 near x = 0. So on an
+interval of half width 1/8 the first omitted term is near (r/2)^20/20!/8^20 < 2e-20.
 """
 
 _TERMS = 34  # terms of a series in integers

@@ -54,13 +54,17 @@ def as_zero(relation: Any) -> Expr:
     InputError
         If the hypothesis is false, or is neither an expression nor an equation of scalars.
     """
-    relation = sympy.sympify(relation)
+    expected = "expected a hypothesis that is an equation, or an expression that is zero"
+    try:
+        relation = sympy.sympify(relation, strict=isinstance(relation, str))
+    except sympy.SympifyError:
+        raise InputError(f"{expected}; got {relation!r}") from None
     if relation is S.true:
         return Integer(0)
     if isinstance(relation, sympy.Eq):
         relation = relation.lhs - relation.rhs
     if not isinstance(relation, Expr):
-        raise InputError(f"expected a hypothesis that is an equation, or an expression that is zero; got {relation}")
+        raise InputError(f"{expected}; got {relation}")
     return relation
 
 

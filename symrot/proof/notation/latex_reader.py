@@ -284,7 +284,9 @@ class _Interpreter(Cursor):
             try:
                 return value(*arguments)
             except (TypeError, AttributeError) as error:  # too many arguments, or a number in place of a matrix
-                raise Unread(f"expected the arguments that {text} has on this page, got others: {error}") from error
+                raise Unread(
+                    f"expected the arguments of the function that this page declares as {text}, got others: {error}"
+                ) from error
         if text in self.names:
             return value
         if text.startswith(("\\dot", "\\ddot")) and self.rates:

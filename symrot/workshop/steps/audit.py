@@ -91,8 +91,8 @@ def audit_step(
     method = _method(path, data)
     if data["trusted"] != trusted(method.name, "bounds" in data):
         raise CertificateError(
-            f"{path}: expected the section 'trusted' (the assumptions) as symrot prints it, got another; emit the step "
-            "again"
+            f"{path}: expected the section 'trusted' (the assumptions) as symrot prints it, got other content; emit "
+            "the step again"
         )
     try:
         texts = _files(path, name, data)
@@ -110,13 +110,13 @@ def audit_step(
     for section, own in (("step", step_section(method)), ("rates", rates_section(rates, values))):
         if data[section] != own:
             raise CertificateError(
-                f"{path}: expected {section!r} in the form that symrot prints, got another; emit the step again"
+                f"{path}: expected {section!r} in the form that symrot prints, got other content; emit the step again"
             )
     progress("proving ..")
     if formula_section(name, rates, method, source) != data["formula"]:
         raise CertificateError(
-            f"{path}: expected in the section 'formula' the proof that symrot derives from the C text, got another; "
-            "emit the step again"
+            f"{path}: expected the section 'formula' to be the proof that symrot derives from the C text, got another "
+            "proof; emit the step again"
         )
     report = [
         f"{name}: {len(texts)} hashes agree; the C text of symrot_{name} and symrot_{name}f, and of their batch "
@@ -170,7 +170,7 @@ def _method(path: Path, data: Data) -> Method:
     try:
         jacobian, order = tuple(step.get("jacobian", ())), step["order"]
         if not all(isinstance(name, str) for name in jacobian):
-            raise TypeError("'jacobian' is no list of names")
+            raise TypeError("'jacobian' is not a list of names")
         method = step_method(step["method"], order if step["method"] == "taylor" else None, jacobian)
     except (InputError, KeyError, TypeError, AttributeError) as reason:
         raise CertificateError(f"{path}: expected a method that symrot knows: {reason}") from None

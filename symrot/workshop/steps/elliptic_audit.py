@@ -72,7 +72,7 @@ def audit_elliptic(path: Path, data: Data, scene: SceneSource | None = None) -> 
         own = json.loads(certificate_json(with_bounds(own, _bounds(path, step, data))))
     if read_input(path, LARGEST) != certificate_json(own).encode():
         _same(path, own, data)
-        raise CertificateError(f"{path}: expected the layout of a certificate as symrot prints it, got another")
+        raise CertificateError(f"{path}: expected the layout of a certificate as symrot prints it, got another layout")
     return [
         f"{step.name}: {len(texts)} files are those that symrot prints for the scene in the certificate",
         f"the C text solves the equations of motion at {STATES} states to {DIGITS} digits; nothing is proven for other "
@@ -97,7 +97,8 @@ def _box(path: Path, data: Data) -> dict[str, tuple[Fraction, Fraction]]:
         return {name: (Fraction(low), Fraction(high)) for name, (low, high) in ends.items()}
     except (AttributeError, KeyError, OverflowError, TypeError, ValueError) as reason:
         raise CertificateError(
-            f"{path}: expected under 'bounds' the ranges 'box' as symrot writes them, got other content ({reason})"
+            f"{path}: expected the entry 'box' of the section 'bounds' in the form that symrot writes, got other "
+            f"content ({reason})"
         ) from None
 
 
@@ -134,7 +135,8 @@ def _numbers(path: Path, bounds: Data, kind: str) -> dict[str, float]:
         return {name: float.fromhex(bounds[kind][name]) for name in STATE_NAMES}
     except (KeyError, TypeError, ValueError, OverflowError) as reason:
         raise CertificateError(
-            f"{path}: expected under 'bounds' the numbers {kind!r} as symrot writes them, got other content ({reason})"
+            f"{path}: expected the entry {kind!r} of the section 'bounds' in the form that symrot writes, got other "
+            f"content ({reason})"
         ) from None
 
 
@@ -158,11 +160,12 @@ def _step(path: Path, data: Data) -> ExactStepText:
     try:
         name, content = data["scene"]["name"], data["scene"]["content"]
         if not isinstance(name, str) or not isinstance(content, Mapping):
-            raise TypeError("a name and the content of a scene")
+            raise TypeError("'name' is not a string, or 'content' is not a mapping")
         return ExactStepText(replace(Scene.from_dict(content), name=name))
     except (InputError, KeyError, TypeError, ValueError, RecursionError) as reason:
         raise CertificateError(
-            f"{path}: expected 'scene' to be a scene with an exact step in elliptic functions, got another ({reason})"
+            f"{path}: expected 'scene' to be a scene with an exact step in elliptic functions, got other content "
+            f"({reason})"
         ) from None
 
 

@@ -24,6 +24,9 @@ CASES = (
     ("tr(σ_x^2) = 1", np.trace(X @ X) - 1),
     ("(σ_x cos φ + σ_y sin φ)² = 1", np.zeros((2, 2))),
     (r"(a\sigma_x + b\sigma_y)^2 = a^2 - b^2", np.eye(2)),
+    ("(b σ_x)² = (b σ_y)²", X @ X - Y @ Y),
+    ("(b σ_x)² = b²", X @ X - np.eye(2)),
+    ("(b σ_x)² = 2 (b σ_y)²", X @ X - 2 * Y @ Y),
     ("det(a σ_x + b σ_y + c σ_z) = -a² - b² - c²", 0),
     (r"\det\sigma_x = 1", np.linalg.det(X) - 1),
     ("tr σ_x = 0", np.trace(X)),
@@ -75,3 +78,8 @@ def test_repairs_have_the_trace_and_the_determinant_of_the_claim():
     repairs = symrot.check("det(a σ_x + b σ_y) = a² - b²").repairs + symrot.check("tr(σ_x σ_y) = 2").repairs
     assert repairs
     assert all("trace" not in repair.text for repair in repairs)
+
+
+def test_stresses_with_a_yield_stress_are_numbers():
+    verdict = symrot.check("σ_1^2 - σ_1 σ_2 + σ_2^2 = σ_y^2", repair=False)
+    assert verdict.verdict == "definition" and not any("Pauli" in note for note in verdict.notes)

@@ -108,7 +108,7 @@ def read_entries(path: str | Path) -> list[Claim | Refusal]:
 def _claim(entry: dict[str, Any], number: int, label: str) -> Claim:
     name = entry.get("id", f"claim-{number}")
     if not isinstance(name, str):
-        raise InputError(f"{label}: claim {number}: expected a text as the value of id, got {name!r}")
+        raise InputError(f"{label}: claim {number}: expected a string as the value of id, got {name!r}")
     place = f"{label}: {name}"
     for key, value in entry.items():
         _check_key(key, value, place)
@@ -200,9 +200,9 @@ def _equation(source: str, where: str, declared: Declared) -> Relation:
 
 def _check_key(key: str, value: Any, place: str) -> None:
     if key in TEXT_KEYS:
-        expected, fits = "text", isinstance(value, str)
+        expected, fits = "a string", isinstance(value, str)
     elif key in LIST_KEYS:
-        expected, fits = "a list of texts", isinstance(value, list) and all(isinstance(v, str) for v in value)
+        expected, fits = "a list of strings", isinstance(value, list) and all(isinstance(v, str) for v in value)
     elif key == "define":
         expected = 'a list of pairs ["name", "formula"]'
         fits = isinstance(value, list) and all(

@@ -59,6 +59,12 @@ def says_too_little(claim: Claim, named: NamedFormula, near: Near) -> bool:
     return is_bare and claim.context.body is None and is_of_body(near.code, near.known.name)
 
 
+POSITIVE = re.compile(
+    r"T(_[a-z]+)?: (period of|kinetic energy)|(K|KE|E_k\w*): kinetic energy|[IJ](_\w+)?: moment of inertia"
+)
+"""Pattern of the name and the meaning of a quantity that is never negative."""
+
+
 def is_of_body(code: str, known: str) -> bool:
     """Return whether the fault ``code`` is a wrong factor or term, and ``known`` names a moment of inertia."""
     # such a formula may be right for another body
@@ -89,7 +95,7 @@ def is_evident(claim: Claim, named: NamedFormula, near: Near) -> bool:
         return False  # alpha may be a deceleration
     if near.code == "factor" and PARALLEL.search(near.known.name):
         return False  # the distance of the axes may be a multiple of a length, as in I_cm + m L^2/4
-    if is_inverted(named, near) or _is_multiple_of_period(named, near):
+    if is_inverted(named, near) or _is_multiple_of_period(named, near) or _is_negative(named, near):
         return True
     if near.has_other_unit and near.code in SAFE_BY_UNIT:
         is_energy = near.known.name.startswith("kinetic energy") and near.known.name.endswith("rolls")
@@ -146,6 +152,12 @@ def is_inverted(named: NamedFormula, near: Near) -> bool:
     """
     is_motion = named.is_rate and len(named.side.args) > 2 and "pendulum" in near.known.name
     return is_motion and near.code in ("sign_of_term", "overall_sign") and not has_terms(named.formula)
+
+
+def _is_negative(named: NamedFormula, near: Near) -> bool:
+    """Return whether a claim is a known formula for a positive quantity with a minus sign: ``T = -2*pi*sqrt(L/g)``."""
+    is_sign = near.code in ("sign_of_term", "overall_sign") and not has_terms(named.formula)
+    return is_sign and not named.is_rate and POSITIVE.match(f"{named.name}: {near.known.name}") is not None
 
 
 def _is_multiple_of_period(named: NamedFormula, near: Near) -> bool:
