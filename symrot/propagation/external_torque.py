@@ -96,6 +96,28 @@ class TorqueSource(ABC):
         """Return the context in which a motion is followed and :meth:`failure` returns the errors of this motion."""
         return nullcontext()
 
+    @contextmanager
+    def following(self, start: float, times: Floats) -> Iterator[None]:
+        """Follow a motion from the time ``start``, s, to ``times``, s, in the ``with`` block.
+
+        Raise InputError if the torque is not defined there. If the motion stops because the torque function raised an
+        error, raise this error.
+        """
+        low, high = (float(times.min()), float(times.max())) if len(times) else (start, start)
+        self.check(min(low, start), max(high, start))
+        with self.watched():
+            try:
+                yield
+            except PropagationError:
+                self.raise_error()
+                raise
+
+    def raise_error(self) -> None:
+        """Raise the error that the torque function raised in :meth:`following`; do nothing if there is none."""
+        failure = self.failure()
+        if failure is not None:
+            raise failure from failure.__cause__
+
 
 @final
 class _Function(TorqueSource):
@@ -427,7 +449,7 @@ class ExternallyDrivenMotion(RestartableMotion, SteppedInC):
 
     def __init__(self, shared: ExternalSetup, plan: Plan) -> None:
         super().__init__(shared.setup, plan)
-        self._shared = shared
+        self._shared, self.external_torque = shared, shared.source
 
     def from_start(self, initial: Initial) -> "ExternallyDrivenMotion":
         """Return the motion from any other initial state; nothing is derived or compiled again."""
@@ -442,29 +464,6 @@ class ExternallyDrivenMotion(RestartableMotion, SteppedInC):
             shared.library, [*self.rate_parameters, *shared.torque_parameters], self.plan.initial_state, self.start,
             self.tolerance, max_step=shared.longest_step, max_steps=shared.source.most_steps, breaks=shared.breaks,
         )  # fmt: skip
-
-    @contextmanager
-    def following(self, times: Floats) -> Iterator[None]:
-        """Follow the motion from the start to ``times``, s, in the ``with`` block.
-
-        Raise InputError if the torque is not defined there. If the motion stops because the torque function raised an
-        error, raise this error.
-        """
-        low, high = (float(times.min()), float(times.max())) if len(times) else (self.start, self.start)
-        source = self._shared.source
-        source.check(min(low, self.start), max(high, self.start))
-        with source.watched():
-            try:
-                yield
-            except PropagationError:
-                self.raise_torque_error()
-                raise
-
-    def raise_torque_error(self) -> None:
-        """Raise the error that the torque function raised since :meth:`following`; do nothing if there is none."""
-        failure = self._shared.source.failure()
-        if failure is not None:
-            raise failure from failure.__cause__
 
     def follow(self, times: Floats, in_order: bool = False) -> tuple[Floats, Stats]:
         """Return the N states at n ``times``, s, shape (n, N), and the cost in steps and evaluations.

@@ -5,7 +5,7 @@ from abc import ABC, abstractmethod
 from collections.abc import Callable, Sequence
 from contextlib import AbstractContextManager, nullcontext
 from functools import cached_property
-from typing import Any
+from typing import Any, Protocol
 
 import numpy as np
 from numpy.typing import ArrayLike, NDArray
@@ -30,12 +30,28 @@ __all__ = ["Motion", "MotionInParts", "RestartableMotion", "ShiftableMotion", "S
 Floats = NDArray[np.float64]
 
 
+class ExternalTorque(Protocol):
+    """A torque without a formula, as a motion under it uses it."""
+
+    def following(self, start: float, times: Floats) -> AbstractContextManager[None]:
+        """Return the context in which a motion is followed from the time ``start``, s, to ``times``, s.
+
+        Raise InputError if the torque is not defined there. If the motion stops because the torque function raised an
+        error, raise this error.
+        """
+
+    def raise_error(self) -> None:
+        """Raise the error that the torque function raised in :meth:`following`; do nothing if there is none."""
+
+
 # Each method has its own subclass. A Setup holds what a motion shares with those from other initial states.
 class Motion(ABC):
     """The motion of a scene from one initial state; its stepper counts time from ``epoch``, a time of the scene, s."""
 
     # whether a torque without a formula acts on the body
     has_external_torque = False
+    # this torque, if there is one
+    external_torque: ExternalTorque | None = None
 
     def __init__(self, setup: Setup, plan: Plan) -> None:
         # setup is shared with motions from other initial states; plan contains this initial state
@@ -151,10 +167,12 @@ class Motion(ABC):
 
         A torque without a formula is checked there: its domain, and the errors that it raises.
         """
-        return nullcontext()
+        return nullcontext() if self.external_torque is None else self.external_torque.following(self.start, times)
 
-    def raise_torque_error(self) -> None:  # noqa: B027
+    def raise_torque_error(self) -> None:
         """Raise the error that a torque function raised since :meth:`following`; do nothing if there is none."""
+        if self.external_torque is not None:
+            self.external_torque.raise_error()
 
     def integrate(self, times: Floats, in_order: bool = False) -> tuple[Floats, Stats]:
         """Return the N states at n times of the scene, s, as one array, shape (n, N), and the steps and evaluations."""
