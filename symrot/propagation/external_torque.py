@@ -445,8 +445,6 @@ class ExternallyDrivenMotion(RestartableMotion, SteppedInC):
     A function depends on time, angular velocity and attitude; a table depends on time alone.
     """
 
-    has_external_torque = True
-
     def __init__(self, shared: ExternalSetup, plan: Plan) -> None:
         super().__init__(shared.setup, plan)
         self._shared, self.external_torque = shared, shared.source

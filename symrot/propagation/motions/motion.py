@@ -48,14 +48,17 @@ class ExternalTorque(Protocol):
 class Motion(ABC):
     """The motion of a scene from one initial state; its stepper counts time from ``epoch``, a time of the scene, s."""
 
-    # whether a torque without a formula acts on the body
-    has_external_torque = False
-    # this torque, if there is one
+    # the torque without a formula that acts on the body, if there is one
     external_torque: ExternalTorque | None = None
 
     def __init__(self, setup: Setup, plan: Plan) -> None:
         # setup is shared with motions from other initial states; plan contains this initial state
         self.setup, self.plan = setup, plan
+
+    @property
+    def has_external_torque(self) -> bool:
+        """Whether a torque without a formula acts on the body."""
+        return self.external_torque is not None
 
     @property
     def choice(self) -> Choice:
